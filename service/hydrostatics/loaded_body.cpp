@@ -41,18 +41,16 @@ Expected<LoadedBody> load_body(const HydrostaticsOptions& options, const Hydrost
   const Expected<const Body*> body = body_of(*scene, options.body);
   if (!body) return tl::unexpected(body.error());
 
-  std::optional<BodyMass> mass;
-  if (options.mesh.empty()) {
-    if ((*body)->dynamics.given) mass = mass_of_body(**body, scene->water());
-  } else {
-    mass = BodyMass{.mass = options.mass.value_or(0.0), .center_of_mass_B = plan.center_of_mass_B};
-  }
-  if (!mass) {
-    return make_error({scene->name() + ": body '" + (*body)->name + "'", "no mass or no centre of mass",
+  Expected<BodyMass> mass =
+      BodyMass{.mass = options.mass.value_or(0.0), .center_of_mass_B = plan.center_of_mass_B};
+  if (options.mesh.empty()) mass = mass_of_body(**body, scene->water());
+  if (options.mesh.empty() && !(*body)->dynamics.given) {
+    mass = make_error({scene->name() + ": body '" + (*body)->name + "'", "no section [body.client]",
                        "a section [body.client] with density, or with mass and center_of_mass",
                        "the service needs no mass, but what floats does",
                        "Add the section to the body in the scene file"});
   }
+  if (!mass) return tl::unexpected(mass.error());
 
   const HydrostaticMesh& prepared = (*body)->prepared_mesh->mesh;
   auto mesh = std::make_shared<HydrostaticMesh>(prepared);

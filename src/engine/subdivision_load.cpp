@@ -56,7 +56,7 @@ bool is_finite(const BuoyancyResult& result) {
 // [m], of body and liquids, in B; nullopt if the scene does not define the mass. liquids: about B's origin.
 std::optional<Vec3> total_center_of_mass(const Body& body, const Water& water, const LiquidSum& liquids) {
   if (!body.center_of_mass_B || !(liquids.mass > 0.0)) return body.center_of_mass_B;
-  const std::optional<BodyMass> own = mass_of_body(body, water);
+  const Expected<BodyMass> own = mass_of_body(body, water);
   if (!own) return std::nullopt;
   return Vec3((own->mass * own->center_of_mass_B + liquids.moment) / (own->mass + liquids.mass));
 }

@@ -85,29 +85,13 @@ BodyFlotation flotation_of(const Body& body, const FloatingBody& floating, const
   return flotation;
 }
 
-std::string mass_text(const Body& body, const BodyFlotation& flotation) {
-  const bool has_tanks = body.subdivision != nullptr && !body.subdivision->tanks.empty();
-  return "a mass of " + format_number(flotation.mass, 6) + " kg" +
-         (has_tanks ? " with the liquids in its tanks" : "");
-}
-
 void add_warnings(const Body& body, const BodyFlotation& flotation, BodyWarningList& list) {
-  switch (flotation.outcome) {
-    case FlotationOutcome::kSinks:
-      list.add(body, {"", mass_text(body, flotation),
-                      "less than the " + format_number(flotation.displaced, 6) +
-                          " kg of water that it can displace",
-                      "the body sinks", "Reduce mass or density, or what is flooded and filled"});
-      return;
-    case FlotationOutcome::kTakesInWater:
-      list.add(body, {"", "no attitude at which it floats with a dry boundary",
-                      "an open mesh whose boundary stays dry", "the body takes in water",
-                      "Reduce its mass, or close the mesh"});
-      return;
-    case FlotationOutcome::kFloats:
-    case FlotationOutcome::kNeutral:
-    case FlotationOutcome::kOutOfRange:
-      break;
+  const FlotationOutcome outcome = flotation.outcome;
+  if (outcome != FlotationOutcome::kFloats) {
+    const bool is_lost = outcome == FlotationOutcome::kSinks || outcome == FlotationOutcome::kTakesInWater;
+    if (is_lost || body.dynamics.start == StartKind::kEquilibrium)
+      list.add(body, not_afloat(body, outcome, flotation.mass, flotation.displaced));
+    return;
   }
   if (!flotation.reached && body.prepared_mesh->mesh.is_open() && !flotation.attitudes.empty()) {
     list.add(body,
@@ -141,7 +125,7 @@ std::vector<FlotationOfBody> scene_flotation(const Scene& scene, std::size_t max
   std::size_t vertices = 0;
   for (const Body& body : scene.bodies()) {
     FlotationOfBody& entry = bodies.emplace_back();
-    const std::optional<BodyMass> own = mass_of_body(body, scene.water());
+    const Expected<BodyMass> own = mass_of_body(body, scene.water());
     if (!body.dynamics.given || !own) continue;
     BodyKey key = keys.floating(body, *own);
     append_direction(body.dynamics.orientation.normalized().conjugate() * scene.water().up_W, key);
@@ -166,7 +150,13 @@ std::vector<FlotationOfBody> scene_flotation(const Scene& scene, std::size_t max
 std::vector<Warning> flotation_warnings(const Scene& scene, const std::vector<FlotationOfBody>& flotation) {
   BodyWarningList list;
   for (std::size_t i = 0; i < flotation.size(); ++i) {
-    if (flotation[i].flotation) add_warnings(scene.bodies()[i], *flotation[i].flotation, list);
+    const Body& body = scene.bodies()[i];
+    if (flotation[i].flotation) add_warnings(body, *flotation[i].flotation, list);
+    if (flotation[i].flotation || flotation[i].left_out || !body.dynamics.given) continue;
+    Expected<BodyMass> mass = mass_of_body(body, scene.water());
+    if (mass) continue;
+    mass.error().subject.clear();
+    list.add(body, std::move(mass.error()));
   }
   return list.with_subjects(scene.name());
 }

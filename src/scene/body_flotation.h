@@ -39,9 +39,10 @@ inline constexpr std::size_t kMaxFlotationVertices = 2'000'000;
 std::vector<FlotationOfBody> scene_flotation(const Scene& scene,
                                              std::size_t max_vertices = kMaxFlotationVertices);
 
-// Warnings about bodies that sink, take in water, capsize (the attitude that they reach is turned by more
-// than 90 degrees), or start at an unstable equilibrium. A warning that applies to several bodies alike
-// appears once and counts them. flotation: of the scene.
+// Warnings about bodies with [body.client] whose mass is unknown, that sink, take in water, capsize (the
+// attitude that they reach is turned by more than 90 degrees), or start at an unstable equilibrium, and about
+// those that cannot start at equilibrium. A warning that applies to several bodies alike appears once and
+// counts them. flotation: of the scene.
 std::vector<Warning> flotation_warnings(const Scene& scene, const std::vector<FlotationOfBody>& flotation);
 
 }  // namespace buoyancy

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/format.h"
 #include "hydrodynamics/small_motions.h"
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/displacement_moments.h"
@@ -288,31 +289,52 @@ BodyKey key_of(const Body& body, const BodyKeys& keys, const BodyMass& own) {
   return key;
 }
 
+std::string subject_of(const Body& body) {
+  return "body " + std::to_string(body.id) + " (" + body.name + ")";
+}
+
 }  // namespace
 
 double NaturalMotion::period() const {
   return frequency > 0.0 ? 2.0 * std::numbers::pi / frequency : kInfinity;
 }
 
-std::optional<BodyMass> mass_of_body(const Body& body, const Water& water) {
+Expected<BodyMass> mass_of_body(const Body& body, const Water& water) {
   const DynamicsSpec& spec = body.dynamics;
   const MassProperties& enclosed = body.prepared_mesh->mass_properties;
-  if (body.prepared_mesh->mesh.is_open() && !(spec.mass && spec.center_of_mass_B && spec.inertia_B)) {
-    return std::nullopt;
+  if (body.prepared_mesh->mesh.is_open()) {
+    std::string missing;
+    for (const auto& [key, given] : {std::pair{"mass", spec.mass.has_value()},
+                                     {"center_of_mass", spec.center_of_mass_B.has_value()},
+                                     {"inertia", spec.inertia_B.has_value()}}) {
+      if (!given) missing += (missing.empty() ? "" : ", ") + std::string(key);
+    }
+    if (!missing.empty()) {
+      return make_error({subject_of(body), "an open mesh without " + missing,
+                         "mass, center_of_mass and inertia in [body.client]",
+                         "a simulation needs them, and an open mesh encloses no volume to derive them from",
+                         "Set " + missing + ", or close the mesh"});
+    }
   }
+  const double density = spec.density.value_or(0.5 * water.density);
   BodyMass result;
-  result.mass = spec.mass.value_or(spec.density.value_or(0.5 * water.density) * enclosed.volume);
+  result.mass = spec.mass.value_or(density * enclosed.volume);
   result.center_of_mass_B = spec.center_of_mass_B.value_or(enclosed.centroid_B);
   result.inertia_B =
       spec.inertia_B ? *spec.inertia_B : Mat3(enclosed.inertia_B * (result.mass / enclosed.volume));
-  if (!(result.mass > 0.0) || !std::isfinite(result.mass) || !result.inertia_B.allFinite())
-    return std::nullopt;
+  if (!(result.mass > 0.0) || !std::isfinite(result.mass) || !result.inertia_B.allFinite()) {
+    return make_error({subject_of(body), "mass = " + format_number(result.mass, 6) + " kg",
+                       "a mass above 0, and with its inertia in double's range",
+                       "a density of " + format_number(density, 6) + " kg/m^3 times an enclosed volume of " +
+                           format_number(enclosed.volume, 6) + " m^3",
+                       "Set mass or density in [body.client]"});
+  }
   return result;
 }
 
 std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh& mesh, const Water& water,
                                         const Vec3& current_W) {
-  const std::optional<BodyMass> own = mass_of_body(body, water);
+  const Expected<BodyMass> own = mass_of_body(body, water);
   if (!own) return std::nullopt;
   const Eigen::Quaterniond q_WB = body.dynamics.orientation.normalized();
   const LoadedBody loaded(body, mesh, *own, q_WB.conjugate() * water.up_W);
@@ -373,7 +395,7 @@ std::vector<MotionsOfBody> scene_motions(const Scene& scene, std::size_t max_ver
   std::size_t vertices = 0;
   for (const Body& given : scene.bodies()) {
     MotionsOfBody& entry = bodies.emplace_back();
-    const std::optional<BodyMass> own = mass_of_body(given, scene.water());
+    const Expected<BodyMass> own = mass_of_body(given, scene.water());
     if (!given.dynamics.given || !own) continue;
     Body body = given;
     if (const Expected<DynamicsSpec> start = starts.start_of(given)) body.dynamics = *start;

@@ -31,9 +31,9 @@ struct BodyMass {
   Mat3 inertia_B = Mat3::Zero();         // [kg m^2], about C
 };
 
-// What [body.client] gives, without the liquids; the rest derived from the mesh as it says. nullopt where an
-// open mesh leaves something unknown, and where a value is not above 0 or not finite.
-std::optional<BodyMass> mass_of_body(const Body& body, const Water& water);
+// What [body.client] gives, without the liquids; the rest derived from the mesh as it says. Errors: an open
+// mesh leaves something unknown; a value is not above 0 or not finite.
+Expected<BodyMass> mass_of_body(const Body& body, const Water& water);
 
 // Heave, roll or pitch.
 struct NaturalMotion {

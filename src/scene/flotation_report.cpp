@@ -47,12 +47,12 @@ Json to_json(const Equilibrium& at, bool reached, const Body& body, const Water&
 
 std::string flotation_text(const FlotationOfBody& entry, const Body& body) {
   if (entry.left_out) return "  attitudes     left out: the bodies before it have too many vertices\n";
+  if (!entry.flotation || entry.flotation->attitudes.empty()) return "";
+  const BodyFlotation& flotation = *entry.flotation;
   std::string text;
-  if (body.dynamics.start == StartKind::kEquilibrium) {
+  if (flotation.reached && body.dynamics.start == StartKind::kEquilibrium) {
     text += "  start         at equilibrium, from its orientation\n";
   }
-  if (!entry.flotation || entry.flotation->attitudes.empty()) return text;
-  const BodyFlotation& flotation = *entry.flotation;
   const std::size_t count = flotation.attitudes.size();
   text +=
       "  attitudes     " + pluralize(static_cast<std::int64_t>(count), "stable attitude", "stable attitudes");

@@ -143,10 +143,9 @@ std::string unknown_text(const MotionsOfBody& entry, const Body& body, const Wat
     return body.hydrodynamics == nullptr ? "" : "  motions       unknown: no mass in [body.client]\n";
   }
   if (entry.left_out) return "  motions       left out: the bodies before it have too many vertices\n";
-  if (mass_of_body(body, water)) return "  motions       unknown: numbers beyond double's range\n";
-  return body.prepared_mesh->mesh.is_open()
-             ? "  motions       unknown: an open mesh needs mass, center_of_mass and inertia\n"
-             : "  motions       unknown: the mass is not above 0\n";
+  const Expected<BodyMass> mass = mass_of_body(body, water);
+  return joined("  motions       unknown: ", mass ? "numbers beyond double's range" : mass.error().actual,
+                "\n");
 }
 
 Json to_json(const Vec3& v) {

@@ -81,8 +81,10 @@ std::string body_text(const Body& body, const Scene& scene) {
   const std::optional<double> mass = mass_of(body, scene.water());
   const std::optional<double> density = density_of(body, scene.water());
   if (mass) {
+    const bool is_default = !body.dynamics.mass && !body.dynamics.density;
     text += "  mass          " + format_number(*mass) + " kg" +
-            (density ? ", " + format_number(*density) + " kg/m^3" : "") + "\n";
+            (density ? ", " + format_number(*density) + " kg/m^3" : "") +
+            (is_default ? " (default: half the water's density)" : "") + "\n";
   } else {
     text += "  mass          unknown: the mesh is open\n";
   }

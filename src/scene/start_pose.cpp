@@ -38,46 +38,39 @@ ReachedEquilibrium reached_by(const Body& body, const FloatingBody& floating, co
   return reached;
 }
 
-Error start_error(const Body& body, const ReachedEquilibrium* reached) {
-  Error error;
-  error.subject = "body " + std::to_string(body.id) + " (" + body.name + "), start = \"equilibrium\"";
-  error.hint = "Start it at a pose: remove start";
-  if (reached == nullptr) {
-    error.actual = "no mass";
-    error.expected = "a mass above 0 in [body.client]";
-    error.cause = "an open mesh needs mass, center_of_mass and inertia";
-    return error;
-  }
+}  // namespace
+
+Warning not_afloat(const Body& body, FlotationOutcome outcome, double mass, double displaced) {
   const bool has_liquids = body.subdivision != nullptr && !body.subdivision->tanks.empty();
-  error.actual = "a mass of " + format_number(reached->mass) + " kg";
-  if (has_liquids) error.actual += " with the liquids in its tanks";
-  error.expected = "less than the " + format_number(reached->displaced) + " kg of water that it can displace";
-  switch (reached->outcome) {
+  Warning warning;
+  warning.actual = "a mass of " + format_number(mass, 6) + " kg";
+  if (has_liquids) warning.actual += " with the liquids in its tanks";
+  warning.expected = "less than the " + format_number(displaced, 6) + " kg of water that it can displace";
+  switch (outcome) {
     case FlotationOutcome::kSinks:
-      error.cause = "the body sinks";
-      error.hint = "Reduce mass or density, or start at a pose: remove start";
+      warning.cause = "the body sinks";
+      warning.hint = "Reduce mass or density, or what is flooded and filled";
       break;
     case FlotationOutcome::kNeutral:
-      error.cause = "the body is neutrally buoyant: it rests at any depth";
-      error.hint = "Give it a position, and remove start";
+      warning.cause = "the body is neutrally buoyant: it rests at any depth";
+      warning.hint = "Give it a position";
       break;
     case FlotationOutcome::kTakesInWater:
-      error.actual = "no attitude at which it floats with a dry boundary";
-      error.expected = "an open mesh whose boundary stays dry";
-      error.cause = "the body takes in water, from its orientation on";
-      error.hint = "Reduce its mass, or close the mesh";
+      warning.actual = "takes in water before it floats";
+      warning.expected = "an open mesh whose boundary stays dry";
+      warning.hint = "Reduce its mass, or close the mesh";
       break;
     case FlotationOutcome::kFloats:
     case FlotationOutcome::kOutOfRange:
-      error.actual = "no equilibrium found";
-      error.expected = "a body that floats";
-      error.cause = "masses or lengths beyond double's range";
+      warning.actual = "no equilibrium found";
+      warning.expected = "a body that floats";
+      warning.cause = "masses or lengths beyond double's range";
+      warning.hint = "Correct the mass, or the size of the mesh";
       break;
   }
-  return error;
+  if (body.dynamics.start == StartKind::kEquilibrium) warning.hint += ", or start at a pose: remove start";
+  return warning;
 }
-
-}  // namespace
 
 Pose placed_pose(const Equilibrium& equilibrium, const DynamicsSpec& dynamics, const Water& water) {
   const Vec3& up_W = water.up_W;
@@ -98,7 +91,12 @@ Expected<DynamicsSpec> StartFinder::start_of(const Body& body) {
   DynamicsSpec start = body.dynamics;
   if (start.start != StartKind::kEquilibrium) return start;
   const ReachedEquilibrium* reached = reached_from_orientation(body);
-  if (reached == nullptr || !reached->equilibrium) return make_error(start_error(body, reached));
+  if (reached == nullptr) return make_error(mass_of_body(body, scene_->water()).error());
+  if (!reached->equilibrium) {
+    Error error = not_afloat(body, reached->outcome, reached->mass, reached->displaced);
+    error.subject = "body " + std::to_string(body.id) + " (" + body.name + "), start = \"equilibrium\"";
+    return make_error(std::move(error));
+  }
   const Pose pose = placed_pose(*reached->equilibrium, body.dynamics, scene_->water());
   start.position = pose.p_WB;
   start.orientation = pose.q_WB;
@@ -106,7 +104,7 @@ Expected<DynamicsSpec> StartFinder::start_of(const Body& body) {
 }
 
 const ReachedEquilibrium* StartFinder::reached_from_orientation(const Body& body) {
-  const std::optional<BodyMass> own = mass_of_body(body, scene_->water());
+  const Expected<BodyMass> own = mass_of_body(body, scene_->water());
   if (!own) return nullptr;
   BodyKey key = keys_.floating(body, *own);
   append_direction(body.dynamics.orientation.normalized().conjugate() * scene_->water().up_W, key);

@@ -24,6 +24,10 @@ struct ReachedEquilibrium {
   double displaced = 0.0;  // [kg], of the water that it displaces fully submerged; of an open mesh a scale
 };
 
+// Why a body does not start at equilibrium, without a subject; worth a warning even if it need not. outcome:
+// not kFloats. mass, displaced: as above.
+Warning not_afloat(const Body& body, FlotationOutcome outcome, double mass, double displaced);
+
 // The pose of an equilibrium at the horizontal position and with the heading of [body.client].
 Pose placed_pose(const Equilibrium& equilibrium, const DynamicsSpec& dynamics, const Water& water);
 
@@ -32,12 +36,12 @@ class StartFinder {
   explicit StartFinder(const Scene& scene) : scene_(&scene), keys_(scene) {}  // scene outlives this object
 
   // body: of the scene. Returns [body.client] with the position and the orientation at which the body starts:
-  // its own without start = "equilibrium". Errors: a body that has no mass, sinks, is neutrally buoyant, or
-  // takes in water before it floats.
+  // its own without start = "equilibrium". Errors: those of mass_of_body(); a body that sinks, is neutrally
+  // buoyant, or takes in water before it floats.
   Expected<DynamicsSpec> start_of(const Body& body);
 
-  // nullptr: the body has no mass. Valid as long as this object. Equal bodies are computed once. Complexity:
-  // find_equilibrium_from().
+  // nullptr: mass_of_body() has none. Valid as long as this object. Equal bodies are computed once.
+  // Complexity: find_equilibrium_from().
   const ReachedEquilibrium* reached_from_orientation(const Body& body);
 
  private:

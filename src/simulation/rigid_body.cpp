@@ -18,11 +18,6 @@
 namespace buoyancy {
 namespace {
 
-Error open_mesh_error(const std::string& subject) {
-  return {subject, "an open mesh without mass, center_of_mass and inertia", "all three in [body.client]",
-          "an open mesh encloses no volume to derive them from", "Set all three, or close the mesh"};
-}
-
 // Sets mass, centre of mass and inertia. Returns false where the inertia is not positive definite.
 bool set_mass(const BodyMass& mass, RigidBody& rigid) {
   rigid.mass = mass.mass;
@@ -80,39 +75,23 @@ void for_each_flooded(const RigidBody& body, const Pose& pose, const Water& wate
 
 Expected<RigidBody> make_rigid_body(const Body& body, const Water& water, const BodyCondition* condition) {
   const DynamicsSpec& spec = body.dynamics;
-  const MassProperties& enclosed = body.prepared_mesh->mass_properties;
-  const std::string subject = "body " + std::to_string(body.id) + " (" + body.name + ")";
-  if (body.prepared_mesh->mesh.is_open() && !(spec.mass && spec.center_of_mass_B && spec.inertia_B)) {
-    return make_error(open_mesh_error(subject));
-  }
-
+  const Expected<BodyMass> own = mass_of_body(body, water);
+  if (!own) return make_error(own.error());
   RigidBody rigid;
-  const double density = spec.density.value_or(0.5 * water.density);
-  rigid.mass = spec.mass.value_or(density * enclosed.volume);
-  if (!(rigid.mass > 0.0) || !std::isfinite(rigid.mass)) {
-    return make_error({subject, "mass = " + format_number(rigid.mass, 6) + " kg", "a mass above 0",
-                       "a density of " + format_number(density, 6) + " kg/m^3 times an enclosed volume of " +
-                           format_number(enclosed.volume, 6) + " m^3",
-                       "Set mass or density in [body.client]"});
-  }
-
-  BodyMass own;
-  own.mass = rigid.mass;
-  own.center_of_mass_B = spec.center_of_mass_B.value_or(enclosed.centroid_B);
-  own.inertia_B = spec.inertia_B ? *spec.inertia_B : Mat3(enclosed.inertia_B * (own.mass / enclosed.volume));
   rigid.reference_B = body.reference_B;
   rigid.linear_damping = {spec.linear_damping, spec.linear_damping_quadratic};
   rigid.angular_damping = {spec.angular_damping, spec.angular_damping_quadratic};
-  BodyMass total = own;
+  BodyMass total = *own;
   if (body.subdivision != nullptr) {
     const Vec3 up_B = spec.orientation.normalized().conjugate() * water.up_W;
-    total = mass_with_liquids(body, own, condition, up_B);
-    rigid.contents = {own, tanks_of(body, condition), open_compartments(body, condition)};
+    total = mass_with_liquids(body, *own, condition, up_B);
+    rigid.contents = {*own, tanks_of(body, condition), open_compartments(body, condition)};
   }
   if (!set_mass(total, rigid)) {
-    return make_error(
-        {subject, "smallest principal inertia = " + format_number(rigid.principal_inertia.minCoeff(), 6),
-         "a positive definite inertia matrix (kg m^2)", "", "Set or correct inertia in [body.client]"});
+    return make_error({"body " + std::to_string(body.id) + " (" + body.name + ")",
+                       "smallest principal inertia = " + format_number(rigid.principal_inertia.minCoeff(), 6),
+                       "a positive definite inertia matrix (kg m^2)", "",
+                       "Set or correct inertia in [body.client]"});
   }
   return rigid;
 }

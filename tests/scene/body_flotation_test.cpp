@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/scene_report.h"
+#include "scene/start_pose.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/scene/scene_texts.h"
 #include "tests/support/json.h"
@@ -88,6 +89,27 @@ TEST(SceneFlotation, WarnsOfOpenMeshesThatTakeInWater) {
   EXPECT_EQ(scene_flotation(scene).at(0).flotation->outcome, FlotationOutcome::kTakesInWater);
   ASSERT_EQ(warnings_of(scene).size(), 1U);
   EXPECT_TRUE(contains(warnings_of(scene)[0], "takes in water"));
+}
+
+TEST(SceneFlotation, WarnsOfWhatTheClientRefuses) {
+  const TempDir directory;
+  const std::string mesh =
+      directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const std::string open = "[[body]]\nid = 1\nmesh = \"" + mesh +
+                           "\"\nopen = \"dry_boundary\"\n[body.client]\nstart = \"equilibrium\"\n";
+  const std::string neutral = "density = 1000\nstart = \"equilibrium\"\n";
+  for (const std::string& text :
+       {open, open + "mass = 1\n", open + "mass = 1\ncenter_of_mass = [0, 0, 0]\n", kWater + bar(1, neutral),
+        kWater + bar(1, "density = 2000\n" + neutral.substr(15))}) {
+    const Scene scene = scene_of(text);
+    const auto start = StartFinder(scene).start_of(scene.bodies().front());
+    ASSERT_FALSE(start) << text;
+    ASSERT_EQ(warnings_of(scene).size(), 1U) << text;
+    EXPECT_TRUE(contains(warnings_of(scene)[0], start.error().actual)) << warnings_of(scene)[0];
+    const std::vector<FlotationOfBody> flotation = scene_flotation(scene);
+    EXPECT_FALSE(contains(scene_report_text(scene, {.flotation = &flotation}), "at equilibrium")) << text;
+  }
+  EXPECT_TRUE(contains(warnings_of(scene_of(open + "mass = 1\n"))[0], "without center_of_mass, inertia;"));
 }
 
 TEST(SceneFlotation, SharesEqualBodiesAndLeavesOutThoseBeyondTheLimit) {

@@ -118,6 +118,18 @@ TEST(SceneReport, WritesUnknownMassForOpenMeshes) {
   EXPECT_NE(scene_report_text(scene).find("mass          unknown: the mesh is open"), std::string::npos);
 }
 
+TEST(SceneReport, SaysThatAMassIsTheDefault) {
+  const std::string line = "  mass          512.5 kg, 512.5 kg/m^3";
+  const std::string by_default =
+      scene_report_text(prepared("[[body]]\nid = 1\nshape = { type = \"box\" }\n"));
+  EXPECT_NE(by_default.find(line + " (default: half the water's density)\n"), std::string::npos)
+      << by_default;
+  EXPECT_NE(scene_report_text(prepared("[[body]]\nid = 1\nshape = { type = \"box\" }\n[body.client]\n"
+                                       "density = 512.5\n"))
+                .find(line + "\n"),
+            std::string::npos);
+}
+
 TEST(SceneReport, FormatsBodiesAndMeshesAsText) {
   const std::string text = scene_report_text(prepared(kThreeBodies));
   for (const char* expected :

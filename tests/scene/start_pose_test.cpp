@@ -94,15 +94,16 @@ TEST(StartPose, ExplainsWhereThereIsNone) {
   EXPECT_EQ(
       sinks,
       "body 1 (bar), start = \"equilibrium\": a mass of 8000 kg; expected less than the 4000 kg of water "
-      "that it can displace. Likely cause: the body sinks. Reduce mass or density, or start at a pose: "
-      "remove start.");
+      "that it can displace. Likely cause: the body sinks. Reduce mass or density, or what is flooded and "
+      "filled, or start at a pose: remove start.");
   EXPECT_NE(start_error(bar("density = 1000\n")).find("neutrally buoyant"), std::string::npos);
   const TempDir directory;
   const std::string mesh =
       directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
   const std::string open = "[[body]]\nid = 1\nmesh = \"" + mesh +
                            "\"\nopen = \"dry_boundary\"\n[body.client]\nstart = \"equilibrium\"\n";
-  EXPECT_NE(start_error(scene_of(open)).find("no mass"), std::string::npos);
+  EXPECT_NE(start_error(scene_of(open + "mass = 9\n")).find("without center_of_mass, inertia; expected"),
+            std::string::npos);
   const std::string heavy = open + "mass = 1e4\ncenter_of_mass = [0, 0, 0]\ninertia = [1, 1, 1]\n";
   EXPECT_NE(start_error(scene_of(heavy)).find("takes in water"), std::string::npos);
 }
