@@ -1,10 +1,12 @@
 // buoyancy-hydrostatics: the program around equilibria, righting arms and hydrostatic tables.
+#include <numbers>
 #include <string>
 #include <utility>
 
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/format.h"
 #include "base/text_file.h"
 #include "cli/command_line.h"
 #include "cli/progress_bar.h"
@@ -82,10 +84,13 @@ Expected<Output> righting_output(const LoadedBody& loaded, const HydrostaticsOpt
   const auto results = righting_results(loaded.body, loaded.water(), plan.heels, plan.points, arms);
   progress.clear();
   if (!results) {
-    return make_error({"gz", "no balance at one of the heels",
-                       "a body that floats at each heel, and trims by less than 89 degrees",
-                       "the body sinks, takes in water or has no stable trim",
-                       "See the command equilibrium, or fix the trim with --fixed-trim"});
+    return make_error(
+        {"gz",
+         "no balance at a heel of " + format_number(results.error() * 180.0 / std::numbers::pi, 4) +
+             " degrees",
+         "a body that floats at each heel, and trims by less than 89 degrees",
+         "the body sinks, takes in water or has no stable trim",
+         "End the heels before it, see the command equilibrium, or fix the trim with --fixed-trim"});
   }
   return Output{options.json ? text_of(righting_json(*results)) : righting_text(*results),
                 righting_csv(*results),

@@ -88,14 +88,15 @@ std::optional<FirstImmersions> immersions(const FloatingBody& body, const Water&
 
 }  // namespace
 
-std::optional<RightingResults> righting_results(const FloatingBody& body, const Water& water,
-                                                std::span<const double> heels, const ImmersionPoints& points,
-                                                const RightingArmOptions& options) {
+tl::expected<RightingResults, double> righting_results(const FloatingBody& body, const Water& water,
+                                                       std::span<const double> heels,
+                                                       const ImmersionPoints& points,
+                                                       const RightingArmOptions& options) {
   const auto count = static_cast<std::int64_t>(heels.size());
   constexpr std::int64_t kCriteriaHeels = kMaxHeel + 1;
-  std::optional<RightingCurve> curve =
+  tl::expected<RightingCurve, double> curve =
       righting_curve(body, water, heels, with_progress(options, 0, kCriteriaHeels));
-  if (!curve) return std::nullopt;
+  if (!curve) return tl::unexpected(curve.error());
   RightingResults results{.curve = *std::move(curve),
                           .criteria = {},
                           .deck_edge = immersions(body, water, points.deck_edge_B, options),

@@ -218,12 +218,12 @@ std::optional<double> RightingCurve::vanishing_port() const {
   return std::nullopt;
 }
 
-std::optional<RightingCurve> righting_curve(const FloatingBody& body, const Water& water,
-                                            std::span<const double> heels,
-                                            const RightingArmOptions& options) {
+tl::expected<RightingCurve, double> righting_curve(const FloatingBody& body, const Water& water,
+                                                   std::span<const double> heels,
+                                                   const RightingArmOptions& options) {
   const ArmSearch search(body, water, options);
   const std::optional<RightingArm> upright = search.at(0.0, 0.0);
-  if (!upright) return std::nullopt;
+  if (!upright) return tl::unexpected(0.0);
 
   // Outwards from heel 0, to either side.
   std::vector<RightingArm> arms(heels.size());
@@ -247,11 +247,11 @@ std::optional<RightingCurve> righting_curve(const FloatingBody& body, const Wate
   };
   double by_trim = 0.0;
   for (std::size_t i = first_positive; i < heels.size(); ++i) {
-    if (!fill(i, i > first_positive ? arms[i - 1] : *upright, by_trim)) return std::nullopt;
+    if (!fill(i, i > first_positive ? arms[i - 1] : *upright, by_trim)) return tl::unexpected(heels[i]);
   }
   by_trim = 0.0;
   for (std::size_t i = first_positive; i-- > 0;) {
-    if (!fill(i, i + 1 < first_positive ? arms[i + 1] : *upright, by_trim)) return std::nullopt;
+    if (!fill(i, i + 1 < first_positive ? arms[i + 1] : *upright, by_trim)) return tl::unexpected(heels[i]);
   }
 
   constexpr double kUpright = 1e-9;  // of the body's size: an arm below it is rounding

@@ -17,6 +17,8 @@
 #include <span>
 #include <vector>
 
+#include <tl/expected.hpp>
+
 #include "flotation/floating_body.h"
 #include "flotation/ship_axes.h"
 
@@ -70,11 +72,11 @@ struct RightingCurve {
   std::optional<double> vanishing_port() const;
 };
 
-// heels: [rad], -pi to pi, ascending. Each trim starts from that of its neighbour towards heel 0. Returns
-// nullopt where righting_arm() does at heel 0 or at one of the heels. Crossings and maxima are refined to
-// 1e-10 rad and 1e-7 rad, which takes some 60 more arms.
-std::optional<RightingCurve> righting_curve(const FloatingBody& body, const Water& water,
-                                            std::span<const double> heels,
-                                            const RightingArmOptions& options = {});
+// heels: [rad], -pi to pi, ascending. Each trim starts from that of its neighbour towards heel 0. Error: the
+// heel, 0 or the first one outwards, at which righting_arm() has no result. Crossings and maxima are refined
+// to 1e-10 rad and 1e-7 rad, which takes some 60 more arms.
+tl::expected<RightingCurve, double> righting_curve(const FloatingBody& body, const Water& water,
+                                                   std::span<const double> heels,
+                                                   const RightingArmOptions& options = {});
 
 }  // namespace buoyancy

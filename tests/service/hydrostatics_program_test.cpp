@@ -293,6 +293,8 @@ TEST_F(HydrostaticsProgram, TakesWaterScaleAndOpenPolicyWithAMesh) {
   open.front() = "gz";
   const ProgramRun capsized = run(open);
   EXPECT_EQ(capsized.exit_code, 1);
+  // The edge goes under water at arctan(0.75 / 1) = 36.9 degrees.
+  EXPECT_NE(capsized.error.find("no balance at a heel of 40 degrees"), std::string::npos) << capsized.error;
   EXPECT_NE(capsized.error.find("takes in water"), std::string::npos) << capsized.error;
 }
 
