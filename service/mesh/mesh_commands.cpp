@@ -64,7 +64,13 @@ struct ComparedMesh {
 
 Expected<ComparedMesh> read_closed(const std::filesystem::path& path, const MeshPreparation& preparation) {
   CheckedMesh checked = check_mesh(path, preparation);
-  if (!checked.mesh) return make_error(*std::move(checked.error));
+  if (!checked.mesh) {
+    if (checked.report && checked.report->closing) {
+      checked.error->hint =
+          "compare needs two closed meshes; what closing changes is in the report of buoyancy-mesh repair";
+    }
+    return make_error(*std::move(checked.error));
+  }
   const MassProperties properties = mass_properties(*checked.mesh);
   return ComparedMesh{std::move(checked.name), {*std::move(checked.mesh), {}}, properties};
 }

@@ -1,5 +1,6 @@
 #include "geometry/mesh_checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -28,12 +29,42 @@ std::string edges_of_kind(const TriangleMesh& mesh, const std::vector<Edge>& edg
          point(mesh.vertex(edges.front()[0])) + " to " + point(mesh.vertex(edges.front()[1])) + ")";
 }
 
+std::string between(const BoundingBox& box) {
+  return "between " + point(box.min_B) + " and " + point(box.max_B);
+}
+
 std::string holes_of(const MeshReport& report) {
   const HoleReport& largest = report.holes.front();
   return pluralize(report.boundary_edges, "boundary edge", "boundary edges") + " in " +
          pluralize(static_cast<std::int64_t>(report.holes.size()), "hole", "holes") + " (" +
          (report.holes.size() == 1 ? "" : "the largest of " + std::to_string(largest.edges) + " edges, ") +
-         "between " + point(largest.box.min_B) + " and " + point(largest.box.max_B) + ")";
+         between(largest.box) + ")";
+}
+
+// What else to ask for where only some holes are to be closed, by number or as rims that face up.
+std::string left_holes_advice(const MeshReport& report, const ClosingOptions& closing) {
+  const auto still_open = [](const SkippedRepair& skipped) {
+    return skipped.obstacle == RepairObstacle::kStillOpen;
+  };
+  if (closing.holes || closing.all_rims || std::ranges::none_of(report.repair.skipped, still_open)) return "";
+  if (closing.rims.empty())
+    return "Holes that do not face up would be left: add --rims, or close_holes in a scene file";
+  constexpr std::size_t kMaxNamed = 8;
+  std::string holes;
+  std::string options;
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < report.holes.size(); ++i) {
+    const std::string number = std::to_string(i + 1);
+    if (std::ranges::count(closing.rims, static_cast<std::int32_t>(i) + 1) > 0 || ++left > kMaxNamed)
+      continue;
+    const HoleReport& hole = report.holes[i];
+    holes += (left == 1 ? "Hole " : ", hole ") + number + " (" + format_number(hole.area, 4) + " m^2, " +
+             between(hole.box) + ")";
+    options += " --rim " + number;
+  }
+  if (left == 0) return "";
+  if (left > kMaxNamed) return holes + " and others would be left: add --rims";
+  return holes + " would be left: add" + options;
 }
 
 bool has_only_boundary(const MeshTopology& topology) {
@@ -102,15 +133,16 @@ std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& t
   if (report.duplicate_faces > 0) add(pluralize(report.duplicate_faces, "duplicate face", "duplicate faces"));
 
   std::string cause;
-  std::string hint = closing_advice(report);
+  std::string hint = left_holes_advice(report, options.closing);
+  if (hint.empty()) hint = closing_advice(report);
   if (only_open) {
     cause = "faces are missing, or parts do not meet within 1e-6 of the mesh's size";
     if (hint.empty()) hint = "Close the holes in a mesh editor";
     if (options.may_be_open) {
       hint +=
           "; or, if they stay above the water, set open = \"dry_boundary\", in a scene file for this body "
-          "(with "
-          "buoyancy-replay --mesh: --open dry_boundary)";
+          "(with buoyancy-replay --mesh: --open dry_boundary), which then needs mass, center_of_mass and "
+          "inertia to be simulated";
     }
   } else {
     cause = report.duplicate_faces > 0 ? "faces stored twice, inner walls or faces of the wrong winding"

@@ -42,6 +42,15 @@ class AlignedLines {
   std::string text_;
 };
 
+// Files hold single precision: more digits would be noise.
+std::string coordinates(const Vec3& point_B) {
+  return format_vector(point_B, 7);
+}
+
+std::string percent(double share) {
+  return format_number(100.0 * share, 3) + " %";
+}
+
 std::string source_text(const MeshSource& source) {
   Listing listing;
   listing.add_if(!source.format.empty(), source.format);
@@ -107,11 +116,15 @@ std::string component_text(const ComponentReport& component) {
   return text;
 }
 
-std::string hole_text(const HoleReport& hole) {
-  return pluralize(hole.edges, "edge", "edges") + ", from " + format_vector(hole.box.min_B) + " to " +
-         format_vector(hole.box.max_B) + "; " + format_number(hole.perimeter, 4) + " m around, " +
+// closing: of all holes, if it is known.
+std::string hole_text(const HoleReport& hole, const std::optional<ClosingEstimate>& closing) {
+  return pluralize(hole.edges, "edge", "edges") + ", from " + coordinates(hole.box.min_B) + " to " +
+         coordinates(hole.box.max_B) + "; " + format_number(hole.perimeter, 4) + " m around, " +
          format_number(hole.area, 4) + " m^2, " + format_number(hole.bulge, 3) +
-         " m^3 in a hemisphere over it" + (hole.slit ? "; a slit" : "");
+         " m^3 in a hemisphere over it" +
+         (closing ? ", " + percent(hole.bulge / closing->volume) + " of the volume when all are closed"
+                  : "") +
+         (hole.slit ? "; a slit" : "");
 }
 
 std::int64_t count_components(const MeshReport& report, bool ComponentReport::*flag) {
@@ -150,10 +163,27 @@ void add_holes(const MeshReport& report, AlignedLines& lines) {
   if (report.holes.empty()) return;
   lines.add("holes", std::to_string(report.holes.size()));
   for (std::size_t i = 0; i < report.holes.size() && i < kMaxListed; ++i) {
-    lines.add("", std::to_string(i + 1) + ": " + hole_text(report.holes[i]));
+    lines.add("", std::to_string(i + 1) + ": " + hole_text(report.holes[i], report.closing));
   }
   if (report.holes.size() > kMaxListed) {
     lines.add("", "and " + std::to_string(report.holes.size() - kMaxListed) + " smaller ones");
+  }
+}
+
+void add_overlap(const MeshReport& report, AlignedLines& lines) {
+  if (!report.intersecting_pairs) return;
+  const std::int64_t pairs = *report.intersecting_pairs;
+  lines.add("intersecting", pluralize(pairs, "pair of faces", "pairs of faces") +
+                                (report.intersections_cut_off ? " at least, too many to count" : ""));
+  const double share = report.overlap_volume.value_or(0.0) / report.volume;
+  if (pairs == 0 && !(share > kMinOverlap)) return;
+  if (report.overlap_volume) {
+    const double counted = share > kMinOverlap ? share : 0.0;
+    lines.add("overlap", format_number(counted * report.volume, 4) + " m^3 count more than once, " +
+                             percent(counted) + " of the volume (within some 0.1 %)");
+  } else {
+    lines.add("overlap", report.closed() ? "not known: what overlaps counts more than once"
+                                         : "not known before the mesh is closed");
   }
 }
 
@@ -204,8 +234,8 @@ std::string closing_advice(const MeshReport& report) {
              "\" in a scene file. ";
   }
   if (disagreement > kMaxCapDisagreement) {
-    return advice + "Closing all holes is ambiguous: caps over them differ by " +
-           format_number(100.0 * disagreement, 3) + " % of the volume; model the missing surface";
+    return advice + "Closing all holes is ambiguous: caps over them differ by " + percent(disagreement) +
+           " of the volume; model the missing surface";
   }
   std::string flags = "--close";
   if (bulge > kDefaultMaxChange) flags = "--rims";
@@ -213,8 +243,8 @@ std::string closing_advice(const MeshReport& report) {
   return advice + "Close them: " + repair + " " + flags +
          ", or close_holes = " + at_least(std::max({bulge, disagreement, kDefaultMaxChange})) +
          " in a scene file; the volume is then " + format_number(report.closing->volume, 6) +
-         " m^3, hemispheres over the caps would hold " + format_number(100.0 * bulge, 3) +
-         " % of it, and different caps differ by " + format_number(100.0 * disagreement, 3) + " %";
+         " m^3, hemispheres over the caps would hold " + percent(bulge) +
+         " of it, and different caps differ by " + percent(disagreement);
 }
 
 std::string to_text(const MeshReport& report) {
@@ -230,8 +260,8 @@ std::string to_text(const MeshReport& report) {
   add_repair(report.repair, lines);
   if (report.triangles == 0) return report.name + "\n" + lines.text();
   lines.add("edges", edges_text(report));
-  lines.add("box", "from " + format_vector(report.box.min_B) + " to " + format_vector(report.box.max_B) +
-                       " m, diagonal " + format_number(report.diagonal) + " m");
+  lines.add("box", "from " + coordinates(report.box.min_B) + " to " + coordinates(report.box.max_B) +
+                       " m, diagonal " + format_number(report.diagonal, 7) + " m");
   lines.add("area", format_number(report.area) + " m^2");
   lines.add("volume", format_number(report.volume) + " m^3" +
                           (report.closed() ? "" : " about the box's centre; meaningless for an open mesh"));
@@ -239,17 +269,7 @@ std::string to_text(const MeshReport& report) {
   lines.add("", "integral of n dA: " + format_vector(report.area_vector) + " m^2");
   add_components(report, lines);
   add_holes(report, lines);
-  if (report.intersecting_pairs) {
-    lines.add("intersecting",
-              pluralize(*report.intersecting_pairs, "pair of faces", "pairs of faces") +
-                  (report.intersections_cut_off ? " at least, too many to count" : "") +
-                  (*report.intersecting_pairs == 0 ? "" : ": overlapping volumes count twice"));
-  }
-  if (report.overlap_volume.value_or(0.0) > kMinOverlap * report.volume) {
-    lines.add("overlap", format_number(*report.overlap_volume, 4) + " m^3 count more than once, " +
-                             format_number(100.0 * *report.overlap_volume / report.volume, 3) +
-                             " % of the volume (within some 0.1 %)");
-  }
+  add_overlap(report, lines);
   if (report.flipped) lines.add("flipped", "was inside out: the winding of all faces was reversed");
   return report.name + "\n" + lines.text();
 }

@@ -34,7 +34,7 @@ constexpr std::array kKinds{
     KindText{RepairKind::kCapHoles, "cap_holes", "negligible hole", "negligible holes", " closed"},
     KindText{RepairKind::kMirror, "mirror", "face", "faces", " of the mirror image added"},
     KindText{RepairKind::kRaiseRims, "raise_rims", "rim", "rims", " raised by a wall"},
-    KindText{RepairKind::kCloseHoles, "close_holes", "hole", "holes", " closed by flat or least surfaces"},
+    KindText{RepairKind::kCloseHoles, "close_holes", "hole", "holes", " closed"},
 };
 
 struct ObstacleText {
@@ -54,7 +54,7 @@ constexpr std::array kObstacles{
     ObstacleText{RepairObstacle::kDisagreement,
                  "not flat: the volumes under different caps differ by this share"},
     ObstacleText{RepairObstacle::kNoRim, "no rim faces up"},
-    ObstacleText{RepairObstacle::kStillOpen, "others would be left"},
+    ObstacleText{RepairObstacle::kStillOpen, "others would be left, or nothing is enclosed"},
 };
 
 const KindText& text_of(RepairKind kind) {
@@ -66,10 +66,17 @@ std::string volume_text(const std::optional<EnclosedSolid>& solid) {
   return solid ? format_number(solid->volume) + " m^3" : "not closed";
 }
 
-std::string step_text(const RepairStep& step) {
+// Is what caps over holes disagree about rounding of their coordinates?
+bool is_flat(const RepairReport& report) {
+  return report.cap_disagreement <= 1e-6 * report.cap_bulge;
+}
+
+std::string step_text(const RepairStep& step, const RepairReport& report) {
   const KindText& kind = text_of(step.kind);
   std::string text = pluralize(step.count, kind.singular, kind.plural);
   text += kind.done;
+  if (step.kind == RepairKind::kCloseHoles)
+    text += is_flat(report) ? " by flat caps" : " by caps of least area";
   text += ", " + format_number(step.area, 4) + " m^2";
   if (step.kind == RepairKind::kInsertVertices) {
     text += ", up to " + format_number(step.max_move, 3) + " m beside them";
@@ -113,7 +120,7 @@ void append(const RepairReport& more, RepairReport& report) {
 std::vector<std::string> to_lines(const RepairReport& report) {
   std::vector<std::string> lines;
   lines.reserve(report.steps.size() + report.skipped.size() + 3);
-  for (const RepairStep& step : report.steps) lines.push_back(step_text(step));
+  for (const RepairStep& step : report.steps) lines.push_back(step_text(step, report));
   for (const SkippedRepair& skipped : report.skipped) lines.push_back(skipped_text(skipped));
   if (report.volume_bound > 0.0) {
     lines.push_back("moved vertices change the volume by at most " + format_number(report.volume_bound, 3) +
@@ -123,9 +130,10 @@ std::vector<std::string> to_lines(const RepairReport& report) {
     lines.push_back("closed holes may hide some " + format_number(report.cap_bulge, 3) +
                     " m^3 (estimate: a hemisphere over each)");
   }
-  if (report.cap_disagreement > 0.0) {
-    lines.push_back("different surfaces over them differ by " + format_number(report.cap_disagreement, 3) +
-                    " m^3 (estimate)");
+  const auto asked_for = [](const RepairStep& step) { return step.kind == RepairKind::kCloseHoles; };
+  if (std::any_of(report.steps.begin(), report.steps.end(), asked_for)) {
+    lines.push_back("different caps over them differ by " + format_number(report.cap_disagreement, 3) +
+                    " m^3 (estimate" + (is_flat(report) ? "; exact if the openings are flat)" : ")"));
   }
   return lines;
 }

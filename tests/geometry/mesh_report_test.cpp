@@ -29,7 +29,7 @@ TEST(MeshReport, FormatsAlignedLines) {
             "  triangles     12\n"
             "  vertices      8 stored, 8 after welding\n"
             "  edges         each used once in each direction\n"
-            "  box           from -1, -1, -1 to 1, 1, 1 m, diagonal 3.46410162 m\n"
+            "  box           from -1, -1, -1 to 1, 1, 1 m, diagonal 3.464102 m\n"
             "  area          24 m^2\n"
             "  volume        8 m^3\n"
             "                from x, y, z: 8, 8, 8 m^3\n"
@@ -50,7 +50,31 @@ TEST(MeshReport, ListsFaultsOfRefusedMesh) {
       text,
       "                1: 3 edges, from -0.5, -0.5, -0.5 to 0.5, 0.5, -0.5; 3.414 m around, 0.5 m^2, 0.133 "
       "m^3 in a hemisphere over it");
-  expect_line(text, "  intersecting  1 pair of faces: overlapping volumes count twice");
+  expect_line(text, "  intersecting  1 pair of faces");
+  expect_line(text, "  overlap       not known before the mesh is closed");
+}
+
+TEST(MeshReport, SaysHowMuchVolumeCountsTwice) {
+  // A box that stands on another, and one that reaches into it.
+  const TriangleMesh deck = box_mesh(Vec3::Zero(), {4.0, 4.0, 1.0});
+  expect_line(text_of(joined(deck, box_mesh({1.0, 1.0, 1.0}, {2.0, 2.0, 2.0}))),
+              "  overlap       0 m^3 count more than once, 0 % of the volume (within some 0.1 %)");
+  expect_line(text_of(joined(deck, box_mesh({1.0, 1.0, 0.5}, {3.0, 3.0, 1.5}))),
+              "  overlap       2 m^3 count more than once, 10 % of the volume (within some 0.1 %)");
+}
+
+TEST(MeshReport, ListsTheShareOfEachHole) {
+  // Of a cube of 8 m^3, one triangle of 2 m^2.
+  const std::string text = text_of(without_face(cube_mesh(2.0), 0));
+  EXPECT_NE(text.find("1.06 m^3 in a hemisphere over it, 13.3 % of the volume when all are closed\n"),
+            std::string::npos)
+      << text;
+}
+
+TEST(MeshReport, RoundsCoordinatesToThoseOfFiles) {
+  EXPECT_NE(text_of(box_mesh(Vec3::Constant(-0.8F), Vec3::Constant(1.4F)))
+                .find("from -0.8, -0.8, -0.8 to 1.4, 1.4, 1.4 m"),
+            std::string::npos);
 }
 
 TEST(MeshReport, ListsRepairs) {

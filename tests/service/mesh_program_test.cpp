@@ -121,6 +121,33 @@ TEST_F(MeshProgram, WritesNothingIfTheMeshCannotBeHad) {
   EXPECT_FALSE(std::filesystem::exists(path("closed.ply")));
 }
 
+TEST_F(MeshProgram, NamesTheHolesThatWouldBeLeft) {
+  // A box without its two ends.
+  TriangleMesh box = box_mesh(Vec3::Zero(), {4.0, 2.0, 1.0});
+  std::erase_if(box.triangles, [&box](const Triangle& t) {
+    const auto all = [&](auto&& condition) {
+      return condition(box.vertex(t[0])) && condition(box.vertex(t[1])) && condition(box.vertex(t[2]));
+    };
+    return all([](const Vec3& v) { return v.x() == 0.0; }) || all([](const Vec3& v) { return v.x() == 4.0; });
+  });
+  const std::string tube = write("tube.obj", box);
+  const ProgramRun one = mesh({"repair", tube, path("closed.ply"), "--rim", "2"});
+  EXPECT_EQ(one.exit_code, 1);
+  EXPECT_NE(one.error.find("Hole 1 (2 m^2, between (0, 0, 0) and (0, 2, 1)) would be left: add --rim 1"),
+            std::string::npos)
+      << one.error;
+  const ProgramRun both = mesh({"repair", tube, path("closed.ply"), "--rim", "2", "--rim", "1"});
+  EXPECT_EQ(both.exit_code, 0) << both.error;
+  EXPECT_NE(both.output.find("2 holes closed by flat caps, 4 m^2"), std::string::npos) << both.output;
+  EXPECT_NE(
+      both.output.find("different caps over them differ by 0 m^3 (estimate; exact if the openings are flat)"),
+      std::string::npos)
+      << both.output;
+  const ProgramRun raised = mesh({"repair", tube, path("closed.ply"), "--freeboard", "1", "--up", "x"});
+  EXPECT_NE(raised.error.find("Holes that do not face up would be left: add --rims"), std::string::npos)
+      << raised.error;
+}
+
 TEST_F(MeshProgram, PlacesAndMirrorsWhatItWrites) {
   // Half a box in millimetres, y up, with an open side in its plane of symmetry z = 0.
   TriangleMesh half = box_mesh({0.0, 0.0, 0.0}, {4000.0, 1000.0, 500.0});
@@ -166,7 +193,9 @@ TEST_F(MeshProgram, ComparesMeshes) {
   EXPECT_NEAR(json["force_difference"].get<double>(), 40'000.0, 40'000.0 * 1e-9);
   EXPECT_LE(json["force_difference"].get<double>(), json["force_bound"].get<double>());
   EXPECT_NE(mesh({"compare", box, high}).output.find("never more than"), std::string::npos);
-  EXPECT_EQ(mesh({"compare", box, write("open.obj", open_box())}).exit_code, 1);
+  const ProgramRun open = mesh({"compare", box, write("open.obj", open_box())});
+  EXPECT_EQ(open.exit_code, 1);
+  EXPECT_NE(open.error.find("compare needs two closed meshes"), std::string::npos) << open.error;
 }
 
 TEST_F(MeshProgram, WrapsWhatDoesNotClose) {
