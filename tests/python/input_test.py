@@ -1,5 +1,6 @@
 """Bad input raises an exception that says what is wrong, and never ends the process."""
 import copy
+import functools
 import pickle
 import tempfile
 import unittest
@@ -55,26 +56,50 @@ class RefusesBadInput(TestCase):
         self.refused(TypeError, "gravity is", query, p, q, gravity=None)
         self.refused(TypeError, "method is", query, p, q, method=3)
         self.refused(TypeError, "expected a Sea", query, p, q, sea=3)
-        self.refused(ValueError, "threads is -1", query, p, q, threads=-1)
-        self.refused(ValueError, "threads is 1.5", query, p, q, threads=1.5)
         self.refused(OverflowError, "too large", query, [[10**400, 0, 0]] * 5, q)
 
     def test_numbers(self):
         query, p, q = self.mesh.query, self.position, self.quaternion
-        self.refused(buoyancy.InputError, "density = -1; expected", query, p, q, density=-1)
-        self.refused(buoyancy.InputError, "level = nan", query, p, q, level=np.nan)
         self.refused(buoyancy.InputError, "up = 0, 0, 0", query, p, q, up=(0, 0, 0))
         self.refused(ValueError, "up has shape", query, p, q, up=(0, 1))
-        self.refused(buoyancy.InputError, "tolerance = 2", query, p, q, tolerance=2)
         self.refused(ValueError, 'method = "exct"; expected one of fast', query, p, q, method="exct")
-        self.refused(ValueError, "time is nan", query, p, q, time=np.nan)
-        self.refused(ValueError, "time is", query, p, q, time=[1e300] * 5)
         self.refused(buoyancy.InputError, "center_of_mass", self.mesh.hydrostatics, p, q, center_of_mass=(0, 0, np.inf))
         sea = buoyancy.Sea(level=2.0, waves=dict(type="regular", height=0.1, period=3))
         self.refused(ValueError, "level = 1 but the sea's is 2", query, p, q, level=1, sea=sea)
         self.refused(ValueError, "up = .* but the sea's is", query, p, q, up=(0, 1, 0), sea=sea)
         self.refused(buoyancy.InputError, "exact", query, p, q, method="exact", sea=sea)
         query(p, q, level=2.0, sea=sea)
+
+    def test_limits(self):
+        query, p, q = self.mesh.query, self.position, self.quaternion
+        tiny, inf = 5e-324, np.inf
+        for name, valid, invalid in (("level", (-1e300, 1e300), (np.nan, inf, -inf)),
+                                     ("density", (0, 1e300), (-tiny, np.nan, inf)),
+                                     ("gravity", (0, 1e300), (-tiny, np.nan, inf)),
+                                     ("tolerance", (0, 1), (-tiny, np.nextafter(1, 2), np.nan, inf))):
+            for value in valid:
+                query(p, q, **{name: value})
+            for value in invalid:
+                self.refused(buoyancy.InputError, f"{name} = .*; expected", query, p, q, **{name: value})
+        longest = 9.2e12
+        for seconds in (-longest, longest, [longest] * 5):
+            query(p, q, time=seconds)
+        beyond = np.nextafter(longest, inf)
+        for seconds in (-beyond, beyond, inf, np.nan, [beyond] * 5):
+            self.refused(ValueError, "time is .*; expected finite seconds", query, p, q, time=seconds)
+
+    def test_limits_of_threads(self):
+        p, q = self.position, self.quaternion
+        sea = buoyancy.Sea(waves=dict(type="regular", height=0.1, period=3))
+        calls = [functools.partial(call, p, q) for call in (self.mesh.query, self.mesh.hydrostatics)]
+        calls += [functools.partial(call, 4, p, q) for call in (self.scene.query, self.scene.hydrostatics)]
+        calls += [functools.partial(sea.elevation, 0, 0, 0)]
+        calls += [functools.partial(call, 0, 0, 0, 0) for call in (sea.velocity, sea.acceleration, sea.pressure)]
+        for call in calls:
+            for threads in (0, 1, 1024):
+                call(threads=threads)
+            for threads in (-1, 1025, 2**70, 1.5, True, "1"):
+                self.refused(ValueError, "threads is .*; expected a whole number from 0 .* to 1024", call, threads=threads)
 
     def test_poses_that_are_wrong_have_a_status(self):
         position, quaternion = self.position.copy(), self.quaternion.copy()

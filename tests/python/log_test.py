@@ -20,7 +20,7 @@ class ReadsRecordings(TestCase):
         cls._folder = tempfile.TemporaryDirectory()
         cls.folder = Path(cls._folder.name)
         cls.rows = np.random.default_rng(4).uniform(-0.2, 0.2, (50, 13))
-        cls.rows[:, 3:7] = (1, 0, 0, 0)
+        cls.rows[:, 3:7] /= np.linalg.norm(cls.rows[:, 3:7], axis=1, keepdims=True)
         text = HEADER + "".join(f"{1000 * i},1,{','.join(map(repr, map(float, row)))}\n" for i, row in enumerate(cls.rows))
         (cls.folder / "poses.csv").write_text(text)
         for output in ("out.csv", "out.lcmlog"):
@@ -68,14 +68,18 @@ class ReadsRecordings(TestCase):
                 self.assert_same_bits(log.wrenches.force[rows], reference.rows(water, body_id)[:, 1:4])
 
     def test_corrupt_parts_are_skipped_and_reported(self):
-        lines = (self.folder / "out.csv").read_text().splitlines(keepends=True)
-        for damage in ("x" + lines[7], lines[7][:-30] + "\n", lines[7].replace("\n", ",1\n"), "\n", "1,2\n"):
-            (self.folder / "damaged.csv").write_text("".join(lines[:7]) + damage + "".join(lines[8:]))
-            log = self.read("damaged.csv")
-            self.assertEqual(len(log.wrenches), 49)
-            self.assertEqual(len(log.corrupt_sections), 0 if damage == "\n" else 1)
-        (self.folder / "damaged.csv").write_text(HEADER + "1,1,0,0,0,1,0,0,0,0,0,0,0,0,zero\n2,1,0,0,0,1,0,0,0,0,0,0,0,0,0\n")
-        self.assertEqual((len(self.read("damaged.csv").states), len(self.read("damaged.csv").corrupt_sections)), (1, 1))
+        # Every column, of wrenches and of poses, and rows that are too short and too long, after a line of nothing.
+        for name, part in (("out.csv", "wrenches"), ("poses.csv", "states")):
+            lines = (self.folder / name).read_text().splitlines()
+            fields = lines[7].split(",")
+            damaged = [fields[:column] + [text] + fields[column + 1:] for column in range(len(fields))
+                       for text in ("", "x", fields[column] + "x")]
+            for damage in (*damaged, fields[:-1], fields + ["1"], ["1", "2"]):
+                (self.folder / "damaged.csv").write_text("\n".join([*lines[:7], " ", ",".join(damage), *lines[8:]]))
+                log = self.read("damaged.csv")
+                self.assertEqual(len(getattr(log, part)), 49, damage)
+                self.assertEqual(len(log.corrupt_sections), 1)
+                self.assertRegex(log.corrupt_sections[0], "^line 9: ")
         whole = bytearray((self.folder / "out.lcmlog").read_bytes())
         second = whole.index(struct.pack(">I", 0xEDA1DA01), 1)
         whole[second:second + 4] = b"\0\0\0\0"

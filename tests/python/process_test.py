@@ -1,5 +1,6 @@
 """The module beside threads, child processes, and without numpy."""
 import ctypes
+import functools
 import os
 import signal
 import subprocess
@@ -183,23 +184,26 @@ except buoyancy.InputError as error:
             subprocess.run([sys.executable, "-c", program, Path(__file__).parent], check=True, timeout=TIMEOUT,
                            env={**os.environ, "LOCPATH": folder})
 
-    def test_forked_children_give_the_same_results(self):
-        mesh = self.reference.mesh("rock")
-        position, quaternion = (np.tile(array, (20, 1)) for array in (self.reference.position, self.reference.quaternion))
-        expected = rows_of(mesh.query(position, quaternion, threads=2))
+    def expect_in_children(self, expected, calls):
+        """Makes each call in a child process of its own. A child that hangs is killed, which its status says."""
         children = []
-        for threads in (0, 1, 2, 3):
+        for call in calls:
             child = os.fork()
             if child == 0:
-                same = np.array_equal(rows_of(mesh.query(position, quaternion, threads=threads)), expected)
-                os._exit(0 if same else 1)
+                os._exit(0 if np.array_equal(rows_of(call()), expected) else 1)
             children.append(child)
-        # A child that hangs is killed, which its status says.
         killer = threading.Timer(TIMEOUT, lambda: [os.kill(child, 9) for child in children])
         killer.start()
         statuses = [os.waitpid(child, 0)[1] for child in children]
         killer.cancel()
-        self.assertEqual(statuses, [0] * 4)
+        self.assertEqual(statuses, [0] * len(calls))
+
+    def test_forked_children_give_the_same_results(self):
+        mesh = self.reference.mesh("rock")
+        position, quaternion = (np.tile(array, (20, 1)) for array in (self.reference.position, self.reference.quaternion))
+        expected = rows_of(mesh.query(position, quaternion, threads=2))
+        self.expect_in_children(expected, [functools.partial(mesh.query, position, quaternion, threads=threads)
+                                           for threads in (0, 1, 2, 3)])
 
     def test_children_forked_during_a_query_do_not_hang(self):
         mesh = self.reference.mesh("rock")
@@ -213,22 +217,11 @@ except buoyancy.InputError as error:
 
         thread = threading.Thread(target=query)
         thread.start()
-        children = []
         try:
-            for _ in range(10):
-                child = os.fork()
-                if child == 0:
-                    same = np.array_equal(rows_of(mesh.query(position, quaternion)), expected)
-                    os._exit(0 if same else 1)
-                children.append(child)
+            self.expect_in_children(expected, [functools.partial(mesh.query, position, quaternion)] * 10)
         finally:
             stop.set()
             thread.join(TIMEOUT)
-        killer = threading.Timer(TIMEOUT, lambda: [os.kill(child, 9) for child in children])
-        killer.start()
-        statuses = [os.waitpid(child, 0)[1] for child in children]
-        killer.cancel()
-        self.assertEqual(statuses, [0] * 10)
 
     def test_a_thread_in_a_query_survives_the_end_of_the_interpreter(self):
         script = ("import sys, threading, buoyancy\n"
