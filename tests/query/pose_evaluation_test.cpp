@@ -20,7 +20,8 @@ namespace {
 constexpr std::int64_t kNow = 1'790'000'000'000'000;  // [us], of 2026
 constexpr double kNaNumber = std::numeric_limits<double>::quiet_NaN();
 
-// Bodies of a rock: plain, an approximation, with drag and loads, and one whose torque is about a corner.
+// Bodies of a rock: plain, an approximation, with drag and loads, one whose torque is about a corner, and one
+// that is flooded and has a tank, drag and loads.
 std::string bodies(const std::string& water) {
   const std::string rock = "shape = { type = \"rock\", frequency = 8, radius = 1.0, seed = 5 }\n";
   return water + "[[body]]\nid = 1\n" + rock +                      //
@@ -28,7 +29,12 @@ std::string bodies(const std::string& water) {
          "[[body]]\nid = 3\noutputs = [\"wrench\", \"loads\"]\n" + rock +
          "[body.drag]\nlinear = [20, 60, 60, 5, 5, 8]\n[body.added_mass]\nmatrix = [5, 126, 126, 1, 33, "
          "33]\n" +
-         "[[body]]\nid = 4\nreference_point = [0.5, -0.5, 1]\n" + rock;
+         "[[body]]\nid = 4\nreference_point = [0.5, -0.5, 1]\n" + rock +
+         "[[body]]\nid = 5\nreference_point = [0.2, 0.1, 0]\noutputs = [\"wrench\", \"loads\"]\n" + rock +
+         "[[body.compartment]]\nshape = { type = \"box\", size = [0.5, 0.6, 0.7] }\nflooded = 0.7\n"
+         "[[body.tank]]\nshape = { type = \"box\", size = [0.5, 0.4, 0.3] }\nposition = [0, 0.5, 0]\nfill = "
+         "0.4\n"
+         "[body.drag]\nlinear = [20, 60, 60, 5, 5, 8]\n";
 }
 
 const std::string kSea =
@@ -53,6 +59,12 @@ Answer ask(RequestHandler& handler, const BodyState& state, std::int64_t utime) 
     EXPECT_FALSE(decode(handler.last_loads(), answer.loads));
   }
   return answer;
+}
+
+ByteVector encoded(const BodyLoads& loads) {
+  ByteVector bytes;
+  encode(BodiesLoads{.id = {}, .bodies = {loads}}, bytes);
+  return bytes;
 }
 
 TEST(PoseEvaluation, HasTheBitsOfTheServicesResponses) {
@@ -80,20 +92,15 @@ TEST(PoseEvaluation, GivesTheLoadsOfABody) {
     RequestHandler handler(scene);
     PoseTable poses = random_poses(60, 1.0, 8);
     poses.utimes = {kNow};
-    WrenchTable wrenches(poses.size());
-    std::vector<BodyLoads> loads(poses.size());
-    const Body& body = *scene.find(3);
-    evaluate_poses(body, water_of(scene), poses.arrays(), wrenches.arrays(), loads);
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const Answer answer = ask(handler, poses.state(i, body.id), kNow);
-      ASSERT_TRUE(equals(wrenches, i, answer.response.bodies[0])) << i;
-      const BodyLoads& expected = answer.loads.bodies.at(0);
-      EXPECT_EQ(loads[i].immersion, expected.immersion);
-      EXPECT_EQ(loads[i].buoyancy_force, expected.buoyancy_force);
-      EXPECT_EQ(loads[i].drag_force, expected.drag_force);
-      EXPECT_EQ(loads[i].drag_torque, expected.drag_torque);
-      EXPECT_EQ(loads[i].added_mass, expected.added_mass);
-      EXPECT_EQ(loads[i].water_velocity, expected.water_velocity);
+    for (const std::int32_t id : {3, 5}) {
+      WrenchTable wrenches(poses.size());
+      std::vector<BodyLoads> loads(poses.size());
+      evaluate_poses(*scene.find(id), water_of(scene), poses.arrays(), wrenches.arrays(), loads);
+      for (std::size_t i = 0; i < poses.size(); ++i) {
+        const Answer answer = ask(handler, poses.state(i, id), kNow);
+        ASSERT_TRUE(equals(wrenches, i, answer.response.bodies[0])) << i;
+        ASSERT_EQ(encoded(loads[i]), encoded(answer.loads.bodies.at(0))) << i;
+      }
     }
   }
 }
@@ -162,21 +169,23 @@ TEST(PoseEvaluation, GivesTheHydrostaticsOfEachPose) {
   const Scene scene = scene_of(bodies(""));
   PoseTable poses = random_poses(300, 1.0, 12);
   poses.quaternions[4 * 5] += 0.1;
-  const Body& body = *scene.find(4);
-  std::vector<BodyHydrostatics> results(poses.size());
-  evaluate_hydrostatics(body, scene.water(), poses.arrays(), results, 2);
-  WrenchTable wrenches(poses.size());
-  evaluate_poses(body, water_of(scene), poses.arrays(), wrenches.arrays());
-  ServiceCounters counters;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    EXPECT_EQ(static_cast<std::int32_t>(results[i].status), wrenches.statuses[i]);
-    const ValidatedPose validated = validate_pose(poses.state(i, body.id), 0.0);
-    const BodyHydrostatics expected =
-        buoyancy::evaluate_hydrostatics(body, scene.water(), validated.pose, validated.status, counters);
-    EXPECT_EQ(results[i].submerged_volume, expected.submerged_volume);
-    EXPECT_EQ(results[i].stiffness, expected.stiffness);
+  for (const std::int32_t id : {4, 5}) {
+    const Body& body = *scene.find(id);
+    std::vector<BodyHydrostatics> results(poses.size());
+    evaluate_hydrostatics(body, scene.water(), poses.arrays(), results, 2);
+    WrenchTable wrenches(poses.size());
+    evaluate_poses(body, water_of(scene), poses.arrays(), wrenches.arrays());
+    ServiceCounters counters;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      EXPECT_EQ(static_cast<std::int32_t>(results[i].status), wrenches.statuses[i]);
+      const ValidatedPose validated = validate_pose(poses.state(i, body.id), 0.0);
+      const BodyHydrostatics expected =
+          buoyancy::evaluate_hydrostatics(body, scene.water(), validated.pose, validated.status, counters);
+      EXPECT_EQ(results[i].submerged_volume, expected.submerged_volume);
+      EXPECT_EQ(results[i].stiffness, expected.stiffness);
+    }
+    EXPECT_EQ(results[5].status, BodyStatus::kBadQuaternion);
   }
-  EXPECT_EQ(results[5].status, BodyStatus::kBadQuaternion);
 }
 
 }  // namespace

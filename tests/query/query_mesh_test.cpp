@@ -1,11 +1,14 @@
 #include "query/query_mesh.h"
 
+#include <barrier>
+#include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "query/pose_evaluation.h"
 #include "scene/up_axis.h"
@@ -14,6 +17,8 @@
 
 namespace buoyancy {
 namespace {
+
+using ::testing::HasSubstr;
 
 const std::vector<double> kTetrahedron{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 const std::vector<std::int64_t> kFaces{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
@@ -50,34 +55,33 @@ TEST(QueryMesh, SaysWhatIsWrongWithArrays) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<std::int64_t> faces = kFaces;
   faces[4] = 4;
-  EXPECT_NE(error_of(kTetrahedron, faces).find("face 1 has the vertex index 4; expected 0 to 3"),
-            std::string::npos);
+  EXPECT_THAT(error_of(kTetrahedron, faces), HasSubstr("face 1 has the vertex index 4; expected 0 to 3"));
   faces[4] = -1;
-  EXPECT_NE(error_of(kTetrahedron, faces).find("index -1"), std::string::npos);
+  EXPECT_THAT(error_of(kTetrahedron, faces), HasSubstr("index -1"));
   faces[4] = std::int64_t{1} << 32;
-  EXPECT_NE(error_of(kTetrahedron, faces).find("4294967296"), std::string::npos);
-  EXPECT_NE(error_of(kTetrahedron, {0, 1}).find("three indices per triangle"), std::string::npos);
-  EXPECT_NE(error_of({0, 1}, kFaces).find("2 coordinates"), std::string::npos);
-  EXPECT_NE(error_of(kTetrahedron, {}).find("no face"), std::string::npos);
-  EXPECT_NE(error_of({}, kFaces).find("index"), std::string::npos);
-  EXPECT_NE(error_of(kTetrahedron, {0, 2, 1, 0, 1, 3}).find("open"), std::string::npos);
+  EXPECT_THAT(error_of(kTetrahedron, faces), HasSubstr("4294967296"));
+  EXPECT_THAT(error_of(kTetrahedron, {0, 1}), HasSubstr("three indices per triangle"));
+  EXPECT_THAT(error_of({0, 1}, kFaces), HasSubstr("2 coordinates"));
+  EXPECT_THAT(error_of(kTetrahedron, {}), HasSubstr("no face"));
+  EXPECT_THAT(error_of({}, kFaces), HasSubstr("index"));
+  EXPECT_THAT(error_of(kTetrahedron, {0, 2, 1, 0, 1, 3}), HasSubstr("open"));
   std::vector<double> vertices = kTetrahedron;
   vertices[7] = kInfinity;
-  EXPECT_NE(error_of(vertices, kFaces).find("finite"), std::string::npos);
+  EXPECT_THAT(error_of(vertices, kFaces), HasSubstr("finite"));
   const auto error_with = [](const MeshPlacement& placement) {
     return error_of(kTetrahedron, kFaces, {.placement = placement});
   };
   for (const double bad : {0.0, kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_NE(error_with({.scale = {1.0, bad, 1.0}}).find("arrays: scale = 1, "), std::string::npos);
-    EXPECT_NE(error_with({.orientation_B = {bad, 0.0, 0.0, 0.0}}).find("orientation"), std::string::npos);
+    EXPECT_THAT(error_with({.scale = {1.0, bad, 1.0}}), HasSubstr("arrays: scale = 1, "));
+    EXPECT_THAT(error_with({.orientation_B = {bad, 0.0, 0.0, 0.0}}), HasSubstr("orientation"));
   }
-  EXPECT_NE(error_with({.position_B = {0.0, kInfinity, 0.0}}).find("position"), std::string::npos);
+  EXPECT_THAT(error_with({.position_B = {0.0, kInfinity, 0.0}}), HasSubstr("position"));
 }
 
 TEST(QueryMesh, SaysWhichFileIsMissing) {
   const auto mesh = QueryMesh::load("no/such/mesh.obj");
   ASSERT_FALSE(mesh);
-  EXPECT_NE(mesh.error().message().find("no/such/mesh.obj"), std::string::npos);
+  EXPECT_THAT(mesh.error().message(), HasSubstr("no/such/mesh.obj"));
 }
 
 TEST(QueryMesh, GivesWhatASceneWithTheSameMeshGives) {
@@ -116,11 +120,16 @@ TEST(QueryMesh, RefusesMethodsThatDoNotWorkInWaves) {
     EXPECT_TRUE(mesh->body(method, 0.0, false));
     const auto body = mesh->body(method, 0.0, true);
     ASSERT_FALSE(body);
-    EXPECT_NE(body.error().message().find("Use hierarchical"), std::string::npos);
+    EXPECT_THAT(body.error().message(), HasSubstr("Use hierarchical"));
   }
   EXPECT_EQ(mesh->body(Method::kHierarchical, 0.0, true).value()->solver.tolerance(), kDefaultWaveTolerance);
-  for (const double tolerance : {-1e-9, 1.1, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_FALSE(mesh->body(Method::kHierarchical, tolerance, false));
+  for (const bool waves : {false, true}) {
+    for (const double tolerance : {1e-9, 1.0})
+      EXPECT_TRUE(mesh->body(Method::kHierarchical, tolerance, waves));
+    for (const double tolerance :
+         {-5e-324, std::nextafter(1.0, 2.0), std::numeric_limits<double>::quiet_NaN()}) {
+      EXPECT_FALSE(mesh->body(Method::kHierarchical, tolerance, waves)) << tolerance;
+    }
   }
 }
 
@@ -128,10 +137,42 @@ TEST(QueryMesh, PreparesABodyOnce) {
   const auto mesh = QueryMesh::make(kTetrahedron, kFaces, "tetrahedron").value();
   const auto body = mesh->body(Method::kExact, 0.0, false).value();
   EXPECT_EQ(body, mesh->body(Method::kExact, 0.5, false).value());
-  // However many tolerances are asked for, few are kept, and those in use stay valid.
-  const auto kept = mesh->body(Method::kHierarchical, 1e-3, false).value();
-  for (int i = 1; i < 100; ++i) EXPECT_TRUE(mesh->body(Method::kHierarchical, 1e-5 * i, false));
-  EXPECT_EQ(kept->solver.tolerance(), 1e-3);
+  // The last 32 are kept, and those in use stay valid.
+  const auto with = [&](int i) { return mesh->body(Method::kHierarchical, 1e-3 * i, false).value(); };
+  std::vector<std::shared_ptr<const Body>> bodies;
+  for (int i = 0; i < 32; ++i) bodies.push_back(with(i));
+  for (int i = 0; i < 32; ++i) EXPECT_EQ(with(i), bodies[static_cast<std::size_t>(i)]);
+  EXPECT_NE(mesh->body(Method::kExact, 0.0, false).value(), body) << "prepared again";
+  EXPECT_EQ(with(1), bodies[1]);
+  EXPECT_NE(with(0), bodies[0]);
+  for (int i = 0; i < 32; ++i) EXPECT_EQ(bodies[static_cast<std::size_t>(i)]->solver.tolerance(), 1e-3 * i);
+}
+
+// Threads that ask for the same body at the same time get the one that the first of them prepares.
+TEST(QueryMesh, PreparesABodyOnceForAllThreads) {
+  const TriangleMesh rock = make_shape(RockShape{.frequency = 40, .seed = 5});
+  std::vector<double> vertices;
+  for (std::size_t i = 0; i < rock.vertex_count(); ++i) {
+    vertices.insert(vertices.end(), {rock.x[i], rock.y[i], rock.z[i]});
+  }
+  std::vector<std::int64_t> faces;
+  for (const Triangle& triangle : rock.triangles) faces.insert(faces.end(), triangle.begin(), triangle.end());
+  for (int round = 0; round < 8; ++round) {
+    const auto mesh = QueryMesh::make(vertices, faces, "rock").value();
+    const bool in_waves = round % 2 == 0;
+    const Method method = in_waves ? Method::kHierarchical : Method::kExact;
+    std::vector<std::shared_ptr<const Body>> bodies(4);
+    std::barrier begin(static_cast<std::ptrdiff_t>(bodies.size()));
+    std::vector<std::thread> threads;
+    for (std::shared_ptr<const Body>& body : bodies) {
+      threads.emplace_back([&] {
+        begin.arrive_and_wait();
+        body = mesh->body(method, 1e-3, in_waves).value();
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    for (const auto& body : bodies) ASSERT_EQ(body, bodies[0]) << "round " << round;
+  }
 }
 
 TEST(QueryMesh, PreparesBodiesOnSeveralThreadsAtOnce) {

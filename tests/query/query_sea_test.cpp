@@ -3,10 +3,12 @@
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace buoyancy {
 namespace {
+
+using ::testing::HasSubstr;
 
 constexpr std::int64_t kNow = 1'790'000'000'000'000;  // [us], of 2026
 
@@ -35,13 +37,12 @@ TEST(QuerySea, ReadsTheKeysOfASceneFile) {
 }
 
 TEST(QuerySea, SaysWhatIsWrongWithItsKeys) {
-  EXPECT_NE(error_of("[water]\nlevl = 1").find("level"), std::string::npos);
-  EXPECT_NE(error_of("[water]\nwaves = \"received\"").find("received"), std::string::npos);
-  EXPECT_NE(error_of("[[body]]\nid = 1").find("body"), std::string::npos);
-  EXPECT_NE(error_of("water = ").find("TOML"), std::string::npos);
-  EXPECT_NE(error_of("[water]\ndepth = 1\nwaves = { type = \"regular\", height = 9, period = 3 }")
-                .find("sea: [water]"),
-            std::string::npos);
+  EXPECT_THAT(error_of("[water]\nlevl = 1"), HasSubstr("level"));
+  EXPECT_THAT(error_of("[water]\nwaves = \"received\""), HasSubstr("received"));
+  EXPECT_THAT(error_of("[[body]]\nid = 1"), HasSubstr("body"));
+  EXPECT_THAT(error_of("water = "), HasSubstr("TOML"));
+  EXPECT_THAT(error_of("[water]\ndepth = 1\nwaves = { type = \"regular\", height = 9, period = 3 }"),
+              HasSubstr("sea: [water]"));
 }
 
 TEST(QuerySea, WaterMovesWithTheCurrentToo) {
@@ -85,22 +86,30 @@ TEST(QuerySea, HasTheWaterOfASnapshotAtEveryPoint) {
       EXPECT_EQ(elevations[i], snapshot.amplitude_factor() > 0.0 ? snapshot.elevation(x1[i], x2[i]) : 0.0);
       const WaterAtPoint expected = snapshot.at({points[3 * i], points[3 * i + 1], points[3 * i + 2]});
       EXPECT_EQ(pressures[i], expected.pressure);
-      EXPECT_EQ(velocities[3 * i + 2], expected.velocity_W.z());
-      EXPECT_EQ(accelerations[3 * i + 1], expected.acceleration_W.y());
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto axis = static_cast<Eigen::Index>(k);
+        EXPECT_EQ(velocities[3 * i + k], expected.velocity_W[axis]);
+        EXPECT_EQ(accelerations[3 * i + k], expected.acceleration_W[axis]);
+      }
     }
   }
 }
 
 TEST(QuerySea, IsFlatWithoutWaves) {
-  const QuerySea sea = sea_of("[water]\nlevel = 1.0\ndensity = 1000\n");
-  const std::vector<double> x{0.0, 5.0};
-  std::vector<double> elevations(2, 9.0), pressures(2), velocities(6, 9.0);
+  const QuerySea sea =
+      sea_of("[world]\nup = [0, -3, 4]\ngravity = 5\n[water]\nlevel = 1.5\ndensity = 1000\n");
+  const std::vector<double> x{0.0, 5.0, 7.0};
+  std::vector<double> elevations(3, 9.0), pressures(3), velocities(9, 9.0), accelerations(9, 9.0);
   const std::vector<std::int64_t> now{kNow};
   sea_elevations(sea, x, x, now, elevations);
-  EXPECT_EQ(elevations, std::vector({0.0, 0.0}));
-  water_at_points(sea, std::vector<double>{0, 0, -1, 0, 0, 2}, now, {pressures, velocities, {}});
-  EXPECT_EQ(pressures, std::vector({2.0 * 1000.0 * kStandardGravity, 0.0}));
-  EXPECT_EQ(velocities, std::vector<double>(6, 0.0));
+  EXPECT_EQ(elevations, std::vector(3, 0.0));
+  // 2.5 m below the surface, 0.5 m below it and above it.
+  water_at_points(sea, std::vector<double>{9, 3, 1, -9, -3, -1, 4, 2, 4}, now,
+                  {pressures, velocities, accelerations});
+  const std::vector<double> depths{2.5, 0.5, 0.0};
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(pressures[i], depths[i] * 1000.0 * 5.0, 1e-9);
+  EXPECT_EQ(velocities, std::vector<double>(9, 0.0));
+  EXPECT_EQ(accelerations, std::vector<double>(9, 0.0));
 }
 
 }  // namespace
