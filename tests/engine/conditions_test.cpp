@@ -9,8 +9,8 @@
 
 #include "engine/request_handler.h"
 #include "tests/engine/box_scene.h"
+#include "tests/engine/reply.h"
 #include "tests/support/allocation_count.h"
-#include "tests/support/byte_vector.h"
 #include "tests/support/damaged_boxes.h"
 #include "tests/support/scene_of.h"
 
@@ -29,24 +29,6 @@ ByteVector request(std::int64_t utime, std::int64_t seq, const std::vector<std::
   std::vector<BodyState> states;
   for (const std::int32_t id : ids) states.push_back(tilted(id));
   return request_bytes({.utime = utime, .session_id = 1, .seq = seq}, states);
-}
-
-// What a handler publishes.
-struct Reply {
-  ByteVector wrenches, hydrostatics, loads;
-
-  bool operator==(const Reply&) const = default;
-};
-
-Reply reply_to(RequestHandler& handler, const ByteVector& request) {
-  return {copy_of(handler.handle(request)), copy_of(handler.last_hydrostatics()),
-          copy_of(handler.last_loads())};
-}
-
-WrenchResponse response_of(const Reply& reply) {
-  WrenchResponse response;
-  EXPECT_FALSE(decode(reply.wrenches, response));
-  return response;
 }
 
 Expected<void> receive(RequestHandler& handler, const ConditionChange& change) {
@@ -105,13 +87,10 @@ TEST(RequestHandlerWithConditions, GivesABodyNoWrenchWhereItsConditionIsUnknown)
     for (const std::size_t i : {1U, 2U}) {
       EXPECT_EQ(response_of(unknown).bodies[i].force, response_of(before).bodies[i].force);
     }
-    BodiesHydrostatics hydrostatics;
-    ASSERT_FALSE(decode(unknown.hydrostatics, hydrostatics));
+    const auto hydrostatics = decoded<BodiesHydrostatics>(unknown.hydrostatics);
     EXPECT_EQ(hydrostatics.bodies.at(0).status, BodyStatus::kBadCondition);
     EXPECT_EQ(hydrostatics.bodies.at(0).submerged_volume, 0.0);
-    BodiesLoads loads;
-    ASSERT_FALSE(decode(unknown.loads, loads));
-    EXPECT_EQ(loads.bodies.at(0).status, BodyStatus::kBadCondition);
+    EXPECT_EQ(decoded<BodiesLoads>(unknown.loads).bodies.at(0).status, BodyStatus::kBadCondition);
     EXPECT_EQ(handler.counters().bodies[static_cast<std::size_t>(BodyStatus::kBadCondition)], 2);
     EXPECT_EQ(handler.counters().conditions_rejected, 1);
 
@@ -129,7 +108,7 @@ TEST(RequestHandlerWithConditions, AnswersARetryWithTheSameBytes) {
   const Reply first = reply_to(handler, request(100, 1));
   ASSERT_TRUE(receive(handler, flooded(0, 0, 1.0)));
   EXPECT_EQ(reply_to(handler, request(100, 1)), first);
-  EXPECT_NE(reply_to(handler, request(100, 2)).wrenches, first.wrenches);
+  EXPECT_NE(reply_to(handler, request(100, 2)).response, first.response);
 }
 
 TEST(RequestHandlerWithConditions, KeepsConditionsWithTheSceneWhereItemsRemain) {

@@ -7,7 +7,7 @@
 #include "engine/body_evaluation.h"
 #include "engine/request_handler.h"
 #include "tests/engine/box_scene.h"
-#include "tests/support/byte_vector.h"
+#include "tests/engine/reply.h"
 
 namespace buoyancy {
 namespace {
@@ -87,19 +87,13 @@ ByteVector request_without_hydrostatics(std::int64_t seq) {
   return request_bytes({.session_id = 1, .seq = seq}, {upright(kBox, 0.0)});
 }
 
-BodiesHydrostatics decoded_hydrostatics(Bytes bytes) {
-  BodiesHydrostatics hydrostatics;
-  EXPECT_FALSE(decode(bytes, hydrostatics).has_value());
-  return hydrostatics;
-}
-
 TEST(RequestHandler, ReturnsHydrostaticsInRequestedOrder) {
   RequestHandler handler(shared_box_scene());
   std::vector<BodyState> bodies{upright(kBox, 0.0), upright(kHydrostaticBox, 0.25), upright(kNoBody, 0.0),
                                 upright(kHydrostaticBox, -0.25), upright(kHydrostaticBox, 0.0)};
   bodies.back().position[0] = std::numeric_limits<double>::quiet_NaN();
   handler.handle(request_bytes({.utime = 5, .session_id = 6, .seq = 7}, bodies));
-  const BodiesHydrostatics found = decoded_hydrostatics(handler.last_hydrostatics());
+  const BodiesHydrostatics found = decoded<BodiesHydrostatics>(handler.last_hydrostatics());
   EXPECT_EQ(found.id.utime, 5);
   EXPECT_EQ(found.id.session_id, 6);
   EXPECT_EQ(found.id.seq, 7);
@@ -151,9 +145,7 @@ TEST(RequestHandler, ReusesHydrostaticsOfUnmovedBody) {
   RequestHandler handler(shared_box_scene());
   const auto send_request = [&](std::int64_t seq, const std::vector<BodyState>& bodies) {
     handler.handle(request_bytes({.session_id = 1, .seq = seq}, bodies, 0.0));
-    BodiesHydrostatics found;
-    EXPECT_FALSE(decode(handler.last_hydrostatics(), found).has_value());
-    return found.bodies;
+    return decoded<BodiesHydrostatics>(handler.last_hydrostatics()).bodies;
   };
   const BodyState low = upright(kHydrostaticBox, 0.0);
   const BodyState high = upright(kHydrostaticBox, 0.2);
