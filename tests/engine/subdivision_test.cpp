@@ -1,6 +1,8 @@
 // Bodies of several parts, with compartments that are open to the sea and with tanks.
 #include <cmath>
+#include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -160,13 +162,90 @@ TEST(Tank, PullsWithItsWeightAlsoInTheAir) {
 
 // The share is of the tank as it is, whose volume rounding makes a little wrong.
 TEST(Tank, BoundsTheErrorOfAVolumeGivenAsAShare) {
-  const Scene scene =
-      scene_of(kWater + body(1, "[40, 40, 40]") + "[[body.tank]]\ndensity = 1000.0\nfill = 0.5\n" +
-               box("[1, 1, 0.001]", "[11, -9, 8]") + "orientation = [0.9, 0.3, 0.1, 0.2]\n");
-  const Pose high{.p_WB = {0.0, 0.0, 100.0}, .q_WB = Eigen::Quaterniond::Identity()};
-  const BuoyancyResult result = evaluated(scene, 1, high).outcome.result;
-  EXPECT_LE(std::abs(result.force_W.z() + 0.5 * 9.80665), result.force_error_bound);
-  EXPECT_LE(result.force_error_bound, 1e-9);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  double reached = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const double thickness = std::pow(10.0, 3.0 * uniform(random));
+    const Vec3 position(9.0 * uniform(random), 9.0 * uniform(random), 9.0 * uniform(random));
+    const Scene scene =
+        scene_of(kWater + body(1, "[40, 40, 40]") + "[[body.tank]]\ndensity = 1000.0\nfill = 0.5\n" +
+                 box("[1, 1, " + format_shortest(thickness) + "]", "[" + format_vector(position) + "]") +
+                 "orientation = [0.9, " + format_shortest(uniform(random)) + ", 0.1, 0.2]\n");
+    const Pose high{.p_WB = {0.0, 0.0, 1e5}, .q_WB = Eigen::Quaterniond::Identity()};
+    const BuoyancyResult result = evaluated(scene, 1, high).outcome.result;
+    const double weight = 500.0 * kStandardGravity * thickness;
+    reached = std::max(reached, std::abs(result.force_W.z() + weight) / result.force_error_bound);
+    EXPECT_LE(result.force_error_bound, 1e-9 * (1.0 + weight));
+  }
+  EXPECT_LE(reached, 1.0);
+  EXPECT_GT(reached, 0.01) << "the bound is of the size of the errors";
+  RecordProperty("reached", std::to_string(reached));
+}
+
+// In the air all bounds are those of the tanks: those of a larger body grow with its volume and lever, those
+// of a distant reference point with the lever, and those of several tanks add up.
+TEST(Tank, BoundsFollowSizeDensityLeverAndNumber) {
+  const auto bounds_of = [](double scale, double density, const Vec3& reference_B, int tanks) {
+    const auto vector = [&](const Vec3& v) { return "[" + format_vector(scale * v, 17) + "]"; };
+    std::string text =
+        kWater + body(1, vector({8, 6, 4})) + "reference_point = " + vector(reference_B) + "\n";
+    for (int i = 0; i < tanks; ++i) {
+      text += "[[body.tank]]\ndensity = " + format_shortest(density) + "\nfill = 0.4\n" +
+              box(vector({1, 2, 0.5}), vector({1, -0.5, 0.25})) + "orientation = [0.9, 0.3, 0.1, 0.2]\n";
+    }
+    const Pose high{.p_WB = {0, 0, 100.0 * scale}, .q_WB = Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5)};
+    const BuoyancyResult result = evaluated(scene_of(text), 1, high).outcome.result;
+    return std::pair{result.force_error_bound, result.torque_error_bound};
+  };
+  const auto expect_ratios = [](const auto& larger, const auto& smaller, double of_force, double of_torque) {
+    EXPECT_NEAR(larger.first / smaller.first, of_force, 1e-6 * of_force);
+    EXPECT_NEAR(larger.second / smaller.second, of_torque, 1e-6 * of_torque);
+  };
+  const Vec3 reference_B(0.5, 0.25, -1.0);
+  const auto one = bounds_of(1.0, 800.0, reference_B, 1);
+  for (const double scale : {1.0 / 1024.0, 1024.0}) {
+    expect_ratios(bounds_of(scale, 800.0, reference_B, 1), one, std::pow(scale, 3), std::pow(scale, 4));
+  }
+  expect_ratios(bounds_of(1.0, 2400.0, reference_B, 1), one, 3.0, 3.0);
+  expect_ratios(bounds_of(1.0, 800.0, reference_B, 2), one, 2.0, 2.0);
+  for (const Vec3& far_B : {Vec3(5000, 0, 0), Vec3(0, -5000, 0), Vec3(0, 0, 5000)}) {
+    const auto far = bounds_of(1.0, 800.0, far_B, 1);
+    EXPECT_EQ(far.first, one.first);
+    EXPECT_NEAR(far.second / bounds_of(1.0, 800.0, 2.0 * far_B, 1).second, 0.5, 1e-3);
+    // Half of an error of the volume turns as much as an error of the weight.
+    EXPECT_GE(far.second, 4990.0 * far.first);
+  }
+}
+
+// A flooded body has the bounds of its hull, and of what each compartment would displace times its share.
+TEST(Compartment, BoundsAddUp) {
+  const std::string keys = "tolerance = 1e-3\nreference_point = [0.7, -0.4, 0.2]\n";
+  const std::string bow = box("[1, 1.5, 1.2]", "[1.2, 0.2, 0.1]"),
+                    stern = box("[1.4, 1, 0.8]", "[-1.1, -0.3, 0]");
+  const auto alone = [&](int id, const std::string& part) {
+    return "[[body]]\nid = " + std::to_string(id) + "\n" + keys + "[[body.part]]\n" + part;
+  };
+  const std::string bodies =
+      body(1, "[4, 2, 1.5]") + keys + "[[body.compartment]]\npermeability = 0.6\nflooded = 0.5\n" + bow +
+      "[[body.compartment]]\n" + stern + body(2, "[4, 2, 1.5]") + keys + alone(3, bow) + alone(4, stern);
+  for (const std::string& water : {kWater, kSwell}) {
+    const Scene scene = scene_of(water + bodies);
+    RandomPoses random(89);
+    for (int i = 0; i < (water == kWater ? 200 : 20); ++i) {
+      const Pose pose = random.crossing(kHullBox, scene.water());
+      std::vector<BodyOutcome> of;
+      for (std::int32_t id = 1; id <= 4; ++id) of.push_back(evaluated(scene, id, pose).outcome);
+      const auto expect_sum = [&](const auto& bound) {
+        const double sum = bound(of[1]) + 0.3 * bound(of[2]) + bound(of[3]);
+        EXPECT_NEAR(bound(of[0]), sum, 1e-12 * sum) << i;
+      };
+      expect_sum([](const BodyOutcome& o) { return o.result.force_error_bound; });
+      expect_sum([](const BodyOutcome& o) { return o.result.torque_error_bound; });
+      expect_sum([](const BodyOutcome& o) { return o.in_waves.volume_error_bound; });
+      EXPECT_NEAR(of[0].flooded_volume, 0.3 * of[2].result.volume + of[3].result.volume, 1e-12);
+    }
+  }
 }
 
 // The torque about a horizontal axis is minus the derivative of the energies of displaced water and liquid.
