@@ -6,8 +6,8 @@
 
 #include "engine/request_handler.h"
 #include "tests/engine/box_scene.h"
+#include "tests/engine/reply.h"
 #include "tests/support/allocation_count.h"
-#include "tests/support/byte_vector.h"
 #include "tests/support/scene_of.h"
 
 namespace buoyancy {
@@ -69,20 +69,9 @@ ByteVector mixed_request(std::int64_t session_id, std::int64_t utime, std::size_
   return request_bytes({.utime = utime, .session_id = session_id, .seq = utime}, states);
 }
 
-struct Reply {
-  ByteVector response, hydrostatics, loads;
-  bool operator==(const Reply&) const = default;
-};
-
-Reply reply_of(const RequestHandler& handler) {
-  return {copy_of(handler.last_response()), copy_of(handler.last_hydrostatics()),
-          copy_of(handler.last_loads())};
-}
-
 Reply whole_reply(const Scene& scene, const ByteVector& request) {
   RequestHandler handler(scene, {.threads = 1});
-  handler.handle(request);
-  return reply_of(handler);
+  return reply_to(handler, request);
 }
 
 TEST(RequestBudgets, SlicesHaveTheBytesOfTheWholeRequest) {
@@ -189,17 +178,64 @@ TEST(RequestBudgets, RejectsARequestThatComputesTooLong) {
   EXPECT_EQ(handler.begin(request, kNoDeadline), Step::kAnswered);
 }
 
+// Messages of exactly the budget are sent; the first byte more leaves them out, each by its own size.
 TEST(RequestBudgets, LeavesOutWhatNoReceiverAccepts) {
-  const Scene scene = mixed_scene(kStill);
-  RequestHandler handler(scene, {.threads = 1, .budgets = {.message_bytes = 2 * loads_size(1)}});
-  const Reply small = (handler.handle(mixed_request(1, 1, 3)), reply_of(handler));
-  EXPECT_EQ(small, whole_reply(scene, mixed_request(1, 1, 3)));
-  EXPECT_FALSE(small.loads.empty());
-  const Reply large = (handler.handle(mixed_request(1, 2, 60)), reply_of(handler));
-  EXPECT_EQ(large.response, whole_reply(scene, mixed_request(1, 2, 60)).response);
-  EXPECT_TRUE(large.loads.empty());
-  EXPECT_TRUE(large.hydrostatics.empty());
-  EXPECT_EQ(handler.counters().outputs_too_large, 2);
+  const ByteVector request = mixed_request(1, 1, 60);
+  const Reply whole = whole_reply(shared_scene(), request);
+  const std::size_t hydrostatics = whole.hydrostatics.size();
+  const std::size_t loads = whole.loads.size();
+  ASSERT_NE(hydrostatics, loads);
+  for (const std::size_t budget : {hydrostatics - 1, hydrostatics, loads - 1, loads}) {
+    RequestHandler handler(shared_scene(), {.threads = 1, .budgets = {.message_bytes = budget}});
+    const Reply reply = reply_to(handler, request);
+    EXPECT_EQ(reply.response, whole.response);
+    EXPECT_EQ(reply.hydrostatics, hydrostatics <= budget ? whole.hydrostatics : ByteVector()) << budget;
+    EXPECT_EQ(reply.loads, loads <= budget ? whole.loads : ByteVector()) << budget;
+    EXPECT_EQ(handler.counters().outputs_too_large, (hydrostatics > budget) + (loads > budget));
+  }
+}
+
+TEST(RequestBudgets, HandlesWhatFillsItsMemoryExactly) {
+  const ByteVector request = mixed_request(1, 1, 60);
+  const Reply whole = whole_reply(shared_scene(), request);
+  const std::size_t bytes =
+      request.size() + whole.response.size() + whole.hydrostatics.size() + whole.loads.size();
+  for (const std::size_t budget : {bytes - 1, bytes}) {
+    RequestHandler handler(shared_scene(), {.threads = 1, .budgets = {.retained_bytes = budget}});
+    EXPECT_EQ(handler.begin(request, kNoDeadline), budget == bytes ? Step::kAnswered : Step::kBusy);
+  }
+}
+
+// The request is evaluated in parts of BodyEvaluator::kMaxStates: the second one has its own outputs.
+TEST(RequestBudgets, PartsOfALargeRequestHaveTheRepliesOfASmallOne) {
+  constexpr std::size_t kPeriod = 7;
+  std::vector<BodyState> states;
+  for (std::size_t i = 0; i < kPeriod; ++i) {
+    states.push_back(upright(static_cast<std::int32_t>(1 + i % 5), 0.1 * static_cast<double>(i) - 0.4));
+  }
+  const Reply small = whole_reply(shared_scene(), request_bytes({.session_id = 1}, states));
+  const auto wrenches = response_of(small).bodies;
+  const auto hydrostatics = decoded<BodiesHydrostatics>(small.hydrostatics).bodies;
+  const auto loads = decoded<BodiesLoads>(small.loads).bodies;
+  constexpr std::size_t kMax = BodyEvaluator::kMaxStates;
+  for (const std::size_t count : {kMax, kMax + 1, 2 * kMax + kPeriod}) {
+    std::vector<BodyState> many;
+    for (std::size_t i = 0; i < count; ++i) many.push_back(states[i % kPeriod]);
+    const Reply large = whole_reply(shared_scene(), request_bytes({.session_id = 1}, many));
+    const auto same = [](const auto& found, const auto& expected, const auto& field) {
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        const auto& of = expected[i % expected.size()];
+        if (found[i].body_id != of.body_id || field(found[i]) != field(of)) return false;
+      }
+      return true;
+    };
+    ASSERT_EQ(response_of(large).bodies.size(), count);
+    EXPECT_TRUE(same(response_of(large).bodies, wrenches, [](const BodyWrench& b) { return b.torque; }));
+    EXPECT_TRUE(same(decoded<BodiesHydrostatics>(large.hydrostatics).bodies, hydrostatics,
+                     [](const BodyHydrostatics& b) { return b.submerged_volume; }));
+    EXPECT_TRUE(same(decoded<BodiesLoads>(large.loads).bodies, loads,
+                     [](const BodyLoads& b) { return b.buoyancy_force; }));
+  }
 }
 
 TEST(RequestBudgets, RetainsRepliesOfTheSessionsUsedLast) {
