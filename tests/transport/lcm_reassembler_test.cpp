@@ -1,5 +1,7 @@
 #include "transport/lcm_reassembler.h"
 
+#include <array>
+
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 #include <unistd.h>
@@ -104,34 +106,31 @@ TEST(LcmReassembler, AddsEachChannelOnce) {
   EXPECT_EQ(reassembler.add_channel("B"), 1U);
 }
 
-TEST(LcmReassembler, DropsMessagesThatLostAFragment) {
+RC_GTEST_PROP(LcmReassembler, DeliversWholeMessagesAndCountsTheFragmentsOfOthers, ()) {
   LcmReassembler reassembler = subscribed_to({"A"});
-  const auto lost = fragments("A", counting(1'000), 300, 5);
-  for (const std::size_t i : {0U, 2U, 3U}) EXPECT_FALSE(reassembler.push(lost[i], 1));
-  const RawBytes payload = counting(1'000);
-  const auto next = fragments("A", payload, 300, 6);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(reassembler.push(next[i], 1));
-  EXPECT_TRUE(holds(reassembler.push(next[3], 1), 0, payload));
-  EXPECT_EQ(reassembler.fragments_dropped(), 3);
-}
-
-RC_GTEST_PROP(LcmReassembler, AcceptsReorderedAndDuplicatedFragments, ()) {
-  LcmReassembler reassembler = subscribed_to({"A"});
-  for (int number = 0; number < 3; ++number) {  // bytes of an earlier message must not appear
+  std::array<std::int64_t, 2> incomplete{};  // fragments of each sender's last message
+  std::int64_t dropped = 0;
+  for (int number = 0; number < 6; ++number) {  // bytes of an earlier message must not appear
+    const auto sender = *rc::gen::inRange<std::size_t>(0, incomplete.size());
     const RawBytes payload = counting(static_cast<std::size_t>(*rc::gen::inRange(301, 3'000)));
-    auto shuffled = fragments("A", payload, 300, number);
-    for (std::size_t i = shuffled.size() - 1; i > 1; --i) {
-      std::swap(shuffled[i], shuffled[*rc::gen::inRange<std::size_t>(1, i + 1)]);
+    auto packets = fragments("A", payload, 300, number);
+    for (std::size_t i = packets.size() - 1; i > 1; --i) {
+      std::swap(packets[i], packets[*rc::gen::inRange<std::size_t>(1, i + 1)]);
     }
-    const RawBytes last = shuffled.back();
-    shuffled.pop_back();
-    for (const RawBytes& packet : shuffled) {
-      RC_ASSERT(!reassembler.push(packet, 1));
-      if (*rc::gen::inRange(0, 4) == 0) RC_ASSERT(!reassembler.push(packet, 1));
+    const std::size_t count = packets.size();
+    if (*rc::gen::arbitrary<bool>()) packets.pop_back();
+    dropped += incomplete[sender];
+    incomplete[sender] = packets.size() < count ? static_cast<std::int64_t>(packets.size()) : 0;
+    for (std::size_t i = 0; i < packets.size(); ++i) {
+      const auto message = reassembler.push(packets[i], sender);
+      RC_ASSERT((i + 1 == count ? holds(message, 0, payload) : !message));
+      // A duplicate of any of them, even if it comes after the whole message. (One of the first then begins
+      // another.)
+      const std::size_t duplicate = *rc::gen::inRange<std::size_t>(0, i + 1);
+      if (duplicate > 0 || i + 1 < count) RC_ASSERT(!reassembler.push(packets[duplicate], sender));
     }
-    RC_ASSERT(holds(reassembler.push(last, 1), 0, payload));
+    RC_ASSERT(reassembler.fragments_dropped() == dropped);
   }
-  RC_ASSERT(reassembler.fragments_dropped() == 0);
 }
 
 TEST(LcmReassembler, DropsFragmentsWithGapsOrOverlaps) {
@@ -234,11 +233,25 @@ TEST(LcmReassembler, DropsFragmentsThatExceedTheirMessage) {
 
 TEST(LcmReassembler, RejectsOversizedMessages) {
   LcmReassembler reassembler = subscribed_to({"A"});
-  RawBytes first = fragments("A", counting(1'000), 600, 1)[0];
-  for (std::size_t i = 8; i < 12; ++i) first[i] = 0xff;  // the size field
-  EXPECT_FALSE(reassembler.push(first, 1));
-  EXPECT_EQ(reassembler.fragments_dropped(), 1);
-  EXPECT_EQ(reassembler.oversized_messages(), 1);
+  for (const std::int64_t excess : {0, 1}) {
+    const RawBytes first = fragments("A", counting(kMaxMessageBytes + excess), 60'000, 1)[0];
+    EXPECT_FALSE(reassembler.push(first, 1));
+    EXPECT_EQ(reassembler.fragments_dropped(), excess);
+    EXPECT_EQ(reassembler.oversized_messages(), excess);
+  }
+}
+
+TEST(LcmReassembler, LimitsPartialMessages) {
+  constexpr std::uint64_t kLimit = LcmReassembler::kMaxPartialMessages;
+  LcmReassembler reassembler = subscribed_to({"A"});
+  const RawBytes payload = counting(500);
+  const auto packets = fragments("A", payload, 300, 1);
+  for (std::uint64_t sender = 0; sender < kLimit; ++sender) reassembler.push(packets[0], sender);
+  EXPECT_EQ(reassembler.partial_messages_evicted(), 0);
+  reassembler.push(packets[0], kLimit);
+  EXPECT_EQ(reassembler.partial_messages_evicted(), 1);
+  for (std::uint64_t sender = 0; sender <= kLimit; ++sender)
+    EXPECT_EQ(holds(reassembler.push(packets[1], sender), 0, payload), sender > 0) << sender;
 }
 
 RC_GTEST_PROP(LcmReassembler, RecoversAfterCorruptPackets, ()) {
