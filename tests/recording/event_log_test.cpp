@@ -1,18 +1,23 @@
 #include "recording/event_log.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <lcm/eventlog.h>
 
 #include "messages/wire.h"
+#include "messages/wire_layout.h"
 #include "tests/support/temp_dir.h"
 
 namespace buoyancy {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
 
 std::vector<std::uint8_t> request(std::int64_t seq, std::size_t bodies = 1) {
   WrenchRequest request;
@@ -125,12 +130,7 @@ TEST(EventLog, SkipsOtherChannelsOfAnySize) {
   const LogContents contents = read_all(log.bytes);
   EXPECT_EQ(contents.seqs, (Seqs{1, 4}));
   EXPECT_TRUE(contents.corrupt_sections.empty());
-}
-
-TEST(EventLog, ReturnsNothingForEmptyFile) {
-  const LogContents contents = read_all("");
-  EXPECT_TRUE(contents.seqs.empty());
-  EXPECT_TRUE(contents.corrupt_sections.empty());
+  EXPECT_TRUE(read_all("").seqs.empty());
 }
 
 TEST(EventLog, ReturnsEveryIntactEventAroundGarbage) {
@@ -146,11 +146,8 @@ TEST(EventLog, ReturnsEveryIntactEventAroundGarbage) {
     const LogContents contents = read_all(bytes);
     EXPECT_EQ(contents.seqs, (Seqs{0, 1, 2, 3})) << length;
     ASSERT_EQ(contents.corrupt_sections.size(), 1U) << length;
-    EXPECT_NE(contents.corrupt_sections[0].find("at byte " + std::to_string(log.starts[2])),
-              std::string::npos)
-        << contents.corrupt_sections[0];
-    EXPECT_NE(contents.corrupt_sections[0].find(std::to_string(length) + " bytes skipped"), std::string::npos)
-        << contents.corrupt_sections[0];
+    EXPECT_THAT(contents.corrupt_sections[0], AllOf(HasSubstr("at byte " + std::to_string(log.starts[2])),
+                                                    HasSubstr(std::to_string(length) + " bytes skipped")));
   }
 }
 
@@ -179,26 +176,52 @@ TEST(EventLog, ReportsTruncatedTailAndKeepsEarlierEvents) {
     const LogContents contents = read_all(log.bytes.substr(0, length));
     EXPECT_EQ(contents.seqs, (Seqs{0, 1})) << length;
     ASSERT_EQ(contents.corrupt_sections.size(), 1U) << length;
-    EXPECT_NE(contents.corrupt_sections[0].find("at byte " + std::to_string(log.starts[2])),
-              std::string::npos)
-        << contents.corrupt_sections[0];
+    EXPECT_THAT(contents.corrupt_sections[0], HasSubstr("at byte " + std::to_string(log.starts[2])));
   }
 }
 
-TEST(EventLog, IgnoresEventHeadersInsideData) {
+TEST(EventLog, LeavesDataToCaller) {
   Log log;
-  Log inner = log_of_requests(1);
-  std::vector<std::uint8_t> data(inner.bytes.begin(), inner.bytes.end());
-  log.add("OTHER", data);
+  log.add("BUOYANCY_STATES", {1, 2, 3});  // no valid request
+  const Log inner = log_of_requests(1);
+  log.add("OTHER", {inner.bytes.begin(), inner.bytes.end()});
   log.add("BUOYANCY_STATES", request(9));
-  EXPECT_EQ(read_all(log.bytes).seqs, Seqs{9});
+  EXPECT_EQ(read_all(log.bytes).seqs, (Seqs{-1, 9}));
 }
 
-TEST(EventLog, PassesInvalidRequestsToCaller) {
-  Log log;
-  log.add("BUOYANCY_STATES", {1, 2, 3});
-  log.add("BUOYANCY_STATES", request(1));
-  EXPECT_EQ(read_all(log.bytes).seqs, (Seqs{-1, 1}));
+// Where it says so, the limit itself is an event.
+TEST(EventLog, LimitsChannelsAndWantedMessages) {
+  constexpr std::size_t kMaxChannel = 999;
+  constexpr std::size_t kMaxMessage = 64 * 1'048'576;
+  struct Case {
+    std::size_t channel;
+    std::size_t message;
+    bool wanted;
+    std::string corrupt;  // empty: an event
+  };
+  for (const Case& c :
+       {Case{1, 0, true, ""}, Case{0, 10, true, "a channel length of 0"}, Case{kMaxChannel, 10, true, ""},
+        Case{kMaxChannel + 1, 10, true, "a channel length of 1000"}, Case{1, kMaxMessage, true, ""},
+        Case{1, kMaxMessage + 1, true, "a message of 67108865 bytes"}, Case{1, kMaxMessage + 1, false, ""}}) {
+    const TempDir directory;
+    std::vector<std::uint8_t> event;
+    encode_event(1, 2, std::string(c.channel, 'A'), {}, event);
+    BigEndianWriter{event.data() + kEventHeaderSize - 4}(static_cast<std::int32_t>(c.message));
+    const std::string path = directory.write("x.lcmlog", std::string(event.begin(), event.end()));
+    std::filesystem::resize_file(path, event.size() + c.message);  // zeros, which take no space
+    auto reader = EventLogReader::open(path, [&](std::string_view) { return c.wanted; });
+    ASSERT_TRUE(reader);
+    const LogItem item = reader->next();
+    if (!c.corrupt.empty()) {
+      ASSERT_TRUE(std::holds_alternative<CorruptSection>(item)) << c.corrupt;
+      EXPECT_THAT(std::get<CorruptSection>(item).description, HasSubstr(c.corrupt));
+    } else if (c.wanted) {
+      ASSERT_TRUE(std::holds_alternative<RecordedEvent>(item)) << c.channel << " " << c.message;
+      EXPECT_EQ(std::get<RecordedEvent>(item).bytes.size(), c.message);
+    } else {
+      EXPECT_TRUE(std::holds_alternative<EndOfLog>(item));
+    }
+  }
 }
 
 TEST(EventLog, FindsLayoutOfEncodedEvents) {

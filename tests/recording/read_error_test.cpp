@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -16,8 +16,10 @@
 #include "tests/support/temp_dir.h"
 
 namespace {
+
+using ::testing::HasSubstr;
 int reads_until_failure = -1;  // negative: none fails
-}
+}  // namespace
 
 extern "C" ssize_t pread(int file, void* bytes, std::size_t count, off_t offset) {
   if (reads_until_failure == 0) {
@@ -85,7 +87,7 @@ TEST_F(ReadError, EndsLogAtEvent) {
     EXPECT_LT(events, kEvents);
     before = events;
     ASSERT_TRUE(reader->file().read_error());
-    EXPECT_NE(reader->file().read_error()->message().find("Input/output error"), std::string::npos);
+    EXPECT_THAT(reader->file().read_error()->message(), HasSubstr("Input/output error"));
     EXPECT_EQ(events_of(*reader), 0) << "the end stays";
   }
 }

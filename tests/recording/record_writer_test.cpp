@@ -7,7 +7,7 @@
 #include <string>
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <sys/eventfd.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -18,6 +18,8 @@
 
 namespace buoyancy {
 namespace {
+
+using testing::HasSubstr;
 
 Bytes bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -72,7 +74,7 @@ TEST(RecordWriter, EndsWithCompleteRecordOnFullDisk) {
       for (int i = 0; i < 1'000'000 && written; ++i) written = file->append(bytes_of("0123456789"));
     }
     ASSERT_FALSE(written);
-    EXPECT_NE(written.error().message().find("could not be written"), std::string::npos);
+    EXPECT_THAT(written.error().message(), HasSubstr("could not be written"));
     EXPECT_EQ(read_file(directory.path("x")).size(), limit / 10 * 10);
   }
 }
@@ -110,8 +112,7 @@ TEST(RecordWriter, FailsOnStalledPipeReaderAfterSignal) {
   for (int i = 0; i < 50'000; ++i) ASSERT_TRUE(file->append(bytes_of(record)));
   const Expected<void> flushed = file->flush();
   ASSERT_FALSE(flushed);
-  EXPECT_NE(flushed.error().message().find("its reader has stalled"), std::string::npos)
-      << flushed.error().message();
+  EXPECT_THAT(flushed.error().message(), HasSubstr("its reader has stalled"));
   const std::string written = pipe.read_all();
   EXPECT_GT(written.size(), 10'000U);
   EXPECT_EQ(written.size() % record.size(), 0U) << "the pipe ends within a record";
@@ -149,11 +150,10 @@ TEST(RecordWriter, ReportsFullDiskAndMissingDirectory) {
   ASSERT_TRUE(file->append(bytes_of("x")));
   const Expected<void> flushed = file->flush();
   ASSERT_FALSE(flushed);
-  EXPECT_NE(flushed.error().message().find("the disk is full"), std::string::npos)
-      << flushed.error().message();
+  EXPECT_THAT(flushed.error().message(), HasSubstr("the disk is full"));
   const auto missing = RecordWriter::create("/no/such/directory/x");
   ASSERT_FALSE(missing);
-  EXPECT_NE(missing.error().message().find("the directory does not exist"), std::string::npos);
+  EXPECT_THAT(missing.error().message(), HasSubstr("the directory does not exist"));
 }
 
 }  // namespace

@@ -4,12 +4,16 @@
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "tests/support/temp_dir.h"
 
 namespace buoyancy {
 namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
 
 const std::string kHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz\n";
 
@@ -78,11 +82,15 @@ TEST(StateCsv, GroupsRowsWithEqualUtimeIntoOneRequest) {
 
 TEST(StateCsv, LimitsRowsPerRequest) {
   std::string contents = kHeader;
-  for (std::size_t i = 0; i < kMaxRowsPerRequest + 1; ++i) contents += "1,1,0,0,0,1,0,0,0\n";
-  const CsvContents read = read_all(contents);
-  ASSERT_EQ(read.requests.size(), 2U);
-  EXPECT_EQ(read.requests[0].bodies.size(), kMaxRowsPerRequest);
-  EXPECT_EQ(read.requests[1].bodies.size(), 1U);
+  for (std::size_t i = 0; i < 2 * kMaxRowsPerRequest; ++i) contents += "1,1,0,0,0,1,0,0,0\n";
+  for (std::size_t rest = 0; rest < 2; ++rest) {
+    const CsvContents read = read_all(contents);
+    ASSERT_EQ(read.requests.size(), 2 + rest);
+    EXPECT_EQ(read.requests[0].bodies.size(), kMaxRowsPerRequest);
+    EXPECT_EQ(read.requests[1].bodies.size(), kMaxRowsPerRequest);
+    EXPECT_EQ(read.requests.back().bodies.size(), rest == 0 ? kMaxRowsPerRequest : 1U);
+    contents += "1,1,0,0,0,1,0,0,0\n";
+  }
 }
 
 TEST(StateCsv, AcceptsNanAndInfinity) {
@@ -115,19 +123,24 @@ TEST(StateCsv, ReportsMalformedRowsWithLineNumberAndContinues) {
     rows += good;
     const CsvContents read = read_all(rows);
     EXPECT_EQ(read.requests.size(), 2U) << bad;
-    ASSERT_EQ(read.corrupt_sections.size(), 1U) << bad;
-    EXPECT_EQ(read.corrupt_sections[0].rfind("line 3: ", 0), 0U) << read.corrupt_sections[0];
+    EXPECT_THAT(read.corrupt_sections, ElementsAre(StartsWith("line 3: "))) << bad;
   }
 }
 
 TEST(StateCsv, ReportsOverlongLineOnce) {
-  const std::string good = "1,1,0,0,0,1,0,0,0\n";
-  const CsvContents read =
-      read_all(kHeader + good + std::string(3'000'000, '7') + "\n" + good + std::string(5000, ' '));
+  const std::string good = "1,1,0,0,0,1,0,0,0";
+  const CsvContents read = read_all(kHeader + good + "\n" + std::string(3'000'000, '7') + "\n" + good + "\n" +
+                                    std::string(5000, ' '));
   EXPECT_EQ(read.requests.size(), 2U);
-  ASSERT_EQ(read.corrupt_sections.size(), 2U);
-  EXPECT_EQ(read.corrupt_sections[0].rfind("line 3: ", 0), 0U) << read.corrupt_sections[0];
-  EXPECT_EQ(read.corrupt_sections[1].rfind("line 5: ", 0), 0U) << read.corrupt_sections[1];
+  EXPECT_THAT(read.corrupt_sections, ElementsAre(StartsWith("line 3: "), StartsWith("line 5: ")));
+  for (const std::size_t length : {4096U, 4097U}) {
+    const std::string line = good + std::string(length - good.size(), ' ');
+    for (const std::string end : {"\n", "\n2,1,0,0,0,1,0,0,0\n", ""}) {
+      const CsvContents around = read_all(kHeader + line + end);
+      EXPECT_EQ(around.requests.size(), (length == 4096 ? 1U : 0U) + (end.size() > 1 ? 1U : 0U)) << length;
+      EXPECT_EQ(around.corrupt_sections.size(), length == 4096 ? 0U : 1U) << length;
+    }
+  }
 }
 
 TEST(StateCsv, NamesExpectedHeaderIfItIsWrong) {
@@ -135,8 +148,7 @@ TEST(StateCsv, NamesExpectedHeaderIfItIsWrong) {
        {std::string("1,1,0,0,0,1,0,0,0\n"), std::string("\n"),
         std::string("utime,body_id,px,py,pz,qx,qy,qz,qw\n"), kHeader.substr(0, kHeader.size() - 1) + ",vx\n",
         std::string(10'000, 'a'), std::string(100, '\0')}) {
-    EXPECT_NE(open_error(contents).find("utime,body_id,px,py,pz,qw,qx,qy,qz"), std::string::npos)
-        << open_error(contents);
+    EXPECT_THAT(open_error(contents), HasSubstr("utime,body_id,px,py,pz,qw,qx,qy,qz"));
   }
 }
 
