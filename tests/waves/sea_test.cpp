@@ -1,9 +1,12 @@
 #include "waves/sea.h"
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -135,43 +138,116 @@ TEST(Sea, IsTooSteepWherePressureFallsDownwardsUnderACrest) {
   }
 }
 
-TEST(Sea, NamesWhatIsWrong) {
-  const auto irregular = [](const std::function<void(IrregularWaves&)>& change) {
+// A number of a system of waves, and the range that it must lie in.
+struct Limited {
+  const char* name;
+  std::function<WaveSystem(double)> system_with;
+  double low, high;
+  bool takes_low = true;
+};
+
+template <typename Change>
+std::function<WaveSystem(double)> irregular(const Change& change) {
+  return [change](double value) {
     IrregularWaves waves = wind_sea();
-    change(waves);
-    return of_systems({RegularWave{1.0, 8.0, 0.0, 0.0}, waves});
+    change(waves, value);
+    return WaveSystem(waves);
   };
-  const auto in_second = [](std::string_view what) {
-    return AllOf(HasSubstr("wave system 2: "), HasSubstr(std::string(what)));
+}
+
+std::vector<Limited> limited_numbers() {
+  const auto regular = [](double RegularWave::*member) {
+    return [member](double value) {
+      RegularWave wave{1.0, 8.0, 0.0, 0.0};
+      wave.*member = value;
+      return WaveSystem(wave);
+    };
   };
-  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.significant_wave_height = -1.0; })),
-              in_second("significant_wave_height = -1; expected a number from 0"));
-  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.peak_period = 0.0; })),
-              in_second("peak_period = 0; expected a number from 0.01"));
-  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.peak_period = kNaN; })),
-              in_second("peak_period = nan"));
-  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.gamma = 100.0; })),
-              in_second("gamma = 100; expected a number from 1 to 10"));
-  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.spreading = 0.0; })), in_second("spreading = 0"));
-  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.direction = kInfinity; })),
-              in_second("direction = inf"));
-  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.frequencies = 0; })), in_second("frequencies = 0"));
-  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.cutoff = 1.0; })), in_second("cutoff = 1"));
-  EXPECT_THAT(error_of(irregular([](auto& waves) { waves.frequencies = 1000; })),
-              HasSubstr("number of wave components = 5001; expected at most 4096"));
-  EXPECT_THAT(error_of(of_systems({WaveComponents{{-0.1, 1.0, 0.0, 0.0}}})), HasSubstr("amplitude = -0.1"));
-  EXPECT_THAT(error_of(of_systems({WaveComponents{{0.1, 0.0, 0.0, 0.0}}})),
-              HasSubstr("angular_frequency = 0"));
-  EXPECT_THAT(error_of(of_systems({RegularWave{1.0, 8.0, 0.0, kNaN}})), HasSubstr("phase = nan"));
-  EXPECT_THAT(error_of(of_systems({WaveComponents(4097, WaveComponent{0.1, 1.0, 0.0, 0.0})})),
-              HasSubstr("4097"));
+  const auto component = [](double WaveComponent::*member) {
+    return [member](double value) {
+      WaveComponents waves{{0.1, 1.0, 0.0, 0.0}, {0.1, 1.0, 0.0, 0.0}};
+      waves[1].*member = value;
+      return WaveSystem(waves);
+    };
+  };
+  constexpr double kMost = kMaxWaveComponents;
+  return {
+      {"height", regular(&RegularWave::height), 0.0, 1e4},
+      {"period", regular(&RegularWave::period), 0.01, 1e5},
+      {"direction", regular(&RegularWave::direction), -1e6, 1e6},
+      {"phase", regular(&RegularWave::phase), -1e6, 1e6},
+      {"amplitude", component(&WaveComponent::amplitude), 0.0, 1e4},
+      {"angular_frequency", component(&WaveComponent::angular_frequency), 1e-5, 1e3},
+      {"direction", component(&WaveComponent::direction), -1e6, 1e6},
+      {"phase", component(&WaveComponent::phase), -1e6, 1e6},
+      {"significant_wave_height",
+       irregular([](auto& waves, double value) { waves.significant_wave_height = value; }), 0.0, 1e4},
+      {"peak_period", irregular([](auto& waves, double value) { waves.peak_period = value; }), 0.01, 1e5},
+      {"gamma", irregular([](auto& waves, double value) { waves.gamma = value; }), 1.0, 10.0},
+      {"direction", irregular([](auto& waves, double value) { waves.direction = value; }), -1e6, 1e6},
+      {"spreading", irregular([](auto& waves, double value) { waves.spreading = value; }), 0.0, 1e4, false},
+      {"frequencies", irregular([](auto& waves, double value) {
+         waves.directions = 1;
+         waves.frequencies = static_cast<std::int32_t>(value);
+       }),
+       1.0, kMost},
+      {"directions", irregular([](auto& waves, double value) {
+         waves.frequencies = 1;
+         waves.directions = static_cast<std::int32_t>(value);
+       }),
+       1.0, kMost},
+      {"cutoff", irregular([](auto& waves, double value) { waves.cutoff = value; }), 1.1, 20.0}};
+}
+
+TEST(Sea, TakesEveryNumberAtItsLimitsAndNamesOneBeyond) {
+  for (const Limited& limited : limited_numbers()) {
+    const std::string name = limited.name;
+    const bool is_count = name == "frequencies" || name == "directions";
+    const auto error_at = [&limited](double value) {
+      return error_of(of_systems({RegularWave{1.0, 8.0, 0.0, 0.0}, limited.system_with(value)}));
+    };
+    const auto beyond = [is_count](double limit, double direction) {
+      return is_count ? limit + direction : std::nextafter(limit, direction * kInfinity);
+    };
+    const auto is_named = AllOf(HasSubstr("wave system 2: "), HasSubstr(name + " = "));
+    // The first system's component is one of those that the most frequencies leave no room for.
+    if (is_count) {
+      EXPECT_THAT(error_at(limited.high),
+                  HasSubstr("number of wave components = 4097; expected at most 4096"));
+      EXPECT_EQ(error_at(limited.high - 1.0), "no error") << name;
+    } else {
+      EXPECT_EQ(error_at(limited.high), "no error") << name;
+    }
+    if (limited.takes_low) {
+      EXPECT_EQ(error_at(limited.low), "no error") << name;
+    } else {
+      EXPECT_THAT(error_at(limited.low), is_named);
+    }
+    EXPECT_THAT(error_at(beyond(limited.low, -1.0)), is_named);
+    EXPECT_THAT(error_at(beyond(limited.high, 1.0)), is_named);
+    if (is_count) continue;
+    for (const double value : {kNaN, kInfinity}) EXPECT_THAT(error_at(value), is_named);
+  }
+  SeaDescription description = of_systems({RegularWave{1.0, 8.0, 0.0, 0.0}});
+  description.ramp = 1e9;
+  EXPECT_EQ(error_of(description), "no error");
+  for (const double ramp : {std::nextafter(1e9, kInfinity), -1e-300, kNaN}) {
+    description.ramp = ramp;
+    EXPECT_THAT(error_of(description), AllOf(HasSubstr("the sea: "), HasSubstr("ramp = ")));
+  }
+}
+
+TEST(Sea, SaysWhatRangeIsExpected) {
+  IrregularWaves waves = wind_sea();
+  waves.gamma = 100.0;
+  EXPECT_THAT(error_of(of_systems({waves})), HasSubstr("gamma = 100; expected a number from 1 to 10"));
 }
 
 TEST(Sea, RefusesWavesHigherThanTheWaterIsDeep) {
   SeaDescription description = of_systems({RegularWave{2.0, 8.0, 0.0, 0.0}});
   description.depth = 2.0;
   EXPECT_THAT(error_of(description), HasSubstr("height = 2; expected less than the water's depth, 2 m"));
-  description.depth = 2.1;
+  description.depth = std::nextafter(2.0, kInfinity);
   EXPECT_EQ(error_of(description), "no error");
   description.depth = 0.0;
   EXPECT_THAT(error_of(description), HasSubstr("depth = 0"));

@@ -185,6 +185,30 @@ TEST(WaveSpectrum, SpreadingHasItsMeanCosine) {
   }
 }
 
+// Of thousands of bins the outermost lie where the density is a millionth of that in the middle.
+TEST(WaveSpectrum, SpreadingReachesAsFarAsItsEnergy) {
+  constexpr std::size_t kBins = 4000;
+  constexpr int kSteps = 1'000'000;
+  for (const double spreading : {1.0, 3.5, 10.0, 75.0, 400.0}) {
+    // The mean angle of the bin on the rim, by a sum over the circle from there.
+    const auto density = [spreading](double angle) {
+      return std::pow(std::cos(0.5 * angle * std::numbers::pi / 180.0), 2.0 * spreading);
+    };
+    const double step = 180.0 / kSteps;
+    double energy = 0.0;
+    for (int i = 0; i < kSteps; ++i) energy += 2.0 * density((i + 0.5) * step);
+    const double of_bin = energy / kBins;
+    double sum = 0.0;
+    double angles = 0.0;
+    for (int i = kSteps - 1; sum < of_bin; --i) {
+      const double share = std::min(density((i + 0.5) * step), of_bin - sum);
+      sum += share;
+      angles += share * (i + 0.5) * step;
+    }
+    EXPECT_NEAR(spreading_angles(spreading, kBins).back(), angles / sum, 2e-3) << spreading;
+  }
+}
+
 TEST(WaveSpectrum, SpreadingIsSymmetric) {
   EXPECT_EQ(spreading_angles(10.0, 1), std::vector<double>{0.0});
   const std::vector<double> angles = spreading_angles(10.0, 5);
