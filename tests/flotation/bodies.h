@@ -21,4 +21,10 @@ inline FloatingBody body_of(const HydrostaticMesh& mesh, double relative_density
       .value();
 }
 
+// Beam 20, depth 12, draught 6, KG 8 [m], with B's origin in the middle.
+struct BoxShip {
+  HydrostaticMesh mesh = mesh_of(BoxShape{{80, 20, 12}, {2, 2, 2}});
+  FloatingBody body = body_of(mesh, 0.5, Vec3(0, 0, 2));
+};
+
 }  // namespace buoyancy

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -64,25 +66,52 @@ TEST(FloatingBody, HasTheHydrostaticsAndTheWrenchOfItsMesh) {
   }
 }
 
-TEST(FloatingBody, HasForceAndTorqueThatAreTheGradientOfItsEnergy) {
-  const HydrostaticMesh mesh = mesh_of(RockShape{.frequency = 8, .roughness = 0.4, .seed = 3});
-  const FloatingBody body = body_of(mesh, 0.4, Vec3(0.05, 0.1, -0.1));
-  RandomPoses random(4);
-  for (int i = 0; i < 20; ++i) {
-    const Pose pose = random.crossing(bounding_box(mesh.surface), kWater);
-    const FloatingState state = state_of(body, pose);
-    const Vec3 axis = random.direction();
-    const auto energy_at = [&](double rise, double angle) {
-      Pose moved = pose;
-      moved.q_WB = Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)) * pose.q_WB.normalized();
-      const Vec3 to_mass = body.center_of_mass_B();
-      moved.p_WB += pose.q_WB.normalized() * to_mass - moved.q_WB * to_mass + Vec3(0, 0, rise);
-      return state_of(body, moved).energy;
-    };
-    const double h = 1e-5;
-    const double scale = body.mass() * kWater.gravity;
-    EXPECT_NEAR(-(energy_at(h, 0) - energy_at(-h, 0)) / (2 * h), state.force_W.z(), 1e-7 * scale);
-    EXPECT_NEAR(-(energy_at(0, h) - energy_at(0, -h)) / (2 * h), axis.dot(state.torque_W), 1e-7 * scale);
+// Of a hull at B's origin and far from it, of a compartment that is turned, or turned and moved, and of a
+// tank.
+TEST(FloatingBody, AddsTheBoundsOfItsMeshesAndTanks) {
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  for (const auto& [scale, distance] : {std::pair{1e-3, 1.0}, {1.0, 1.0}, {1.0, 0.0}, {1e3, 1.0}}) {
+    const HydrostaticMesh hull = mesh_of(SphereShape{scale, 12});
+    const HydrostaticMesh room = mesh_of(BoxShape{{0.5 * scale, 0.4 * scale, 0.3 * scale}, {2, 2, 2}});
+    const HydrostaticMesh tank_mesh = mesh_of(SphereShape{0.2 * scale, 12});
+    const Vec3 far = scale * distance * Vec3(300, -200, 100);
+    const std::array<PlacedMesh, 2> meshes{
+        PlacedMesh{.mesh = &hull, .position_B = far},
+        PlacedMesh{.mesh = &room,
+                   .position_B = far + scale * distance * Vec3(0.2, 0.1, -0.1),
+                   .orientation_B = Eigen::Quaterniond(0.8, 0.3, -0.4, 0.2),
+                   .factor = -0.6}};
+    const std::array<Tank, 1> tanks{
+        Tank{.mesh = &tank_mesh, .liquid_volume = 0.4 * tank_mesh.volume, .density = 900.0}};
+    const Vec3 center_of_mass_B = far + scale * Vec3(0.5, -0.3, 0.2);
+    const Water water{.level = 4.0 * scale, .density = 1025.0, .gravity = 9.8};
+    const FloatingBody body =
+        FloatingBody::make(meshes, 0.4 * water.density * hull.volume, center_of_mass_B, tanks).value();
+    const Vec3 center_B = hull.center_B + far;
+    double volume = 0.0;
+    double moment = 0.0;
+    for (const PlacedMesh& placed : meshes) {
+      const HydrostaticMesh& mesh = *placed.mesh;
+      const Mat3 R = placed.orientation_B.normalized().toRotationMatrix();
+      const double offset = (R * mesh.center_B + placed.position_B - center_B).norm();
+      const bool is_moved = distance > 0.0 || placed.factor < 0.0;
+      const double moved = is_moved ? mesh.diagonal + offset + placed.position_B.norm() : 0.0;
+      const double bound =
+          std::abs(placed.factor) * (mesh.rounding_bound() + 4.0 * kEpsilon * mesh.area * moved);
+      volume += bound;
+      moment += bound * mesh.max_lever_arm(R.transpose() * (center_of_mass_B - placed.position_B));
+    }
+    const double liquid =
+        2.0 * 900.0 * tank_mesh.rounding_bound() * tank_mesh.max_lever_arm(center_of_mass_B);
+    const double weight = water.gravity * body.total_mass();
+    RandomPoses random(9);
+    for (int i = 0; i < 5; ++i) {
+      const Pose pose = random.crossing({center_B + hull.box_min, center_B + hull.box_max}, water);
+      const FloatingState state = floating_state(body, pose, water).value();
+      const double specific_weight = water.density * water.gravity;
+      EXPECT_NEAR(state.force_error_bound / (specific_weight * volume + kEpsilon * weight), 1.0, 1e-9);
+      EXPECT_NEAR(state.torque_error_bound / (specific_weight * moment + water.gravity * liquid), 1.0, 1e-9);
+    }
   }
 }
 

@@ -112,23 +112,6 @@ TEST(HydrostaticTable, OfAWigleyHullConvergesToItsClosedFormQuadratically) {
   EXPECT_LT(last, 1e-3);
 }
 
-TEST(HydrostaticTable, OfACylinderAndASphereHasTheirMetacentres) {
-  const HydrostaticMesh cylinder = mesh_of(CylinderShape{.radius = 1.0, .height = 4.0, .segments = 400});
-  const FloatingBody upright = body_of(cylinder, 0.5);
-  for (const double draft : {0.5, 2.0}) {
-    const auto row = table_of(upright).row(draft);
-    EXPECT_NEAR(row->bm_t, 1.0 / (4 * draft), 1e-4);
-    EXPECT_NEAR(row->bm_l, row->bm_t, 1e-10);
-  }
-  const HydrostaticMesh sphere = mesh_of(SphereShape{1.0, 100});
-  const FloatingBody ball = body_of(sphere, 0.5);
-  for (const double draft : {0.2, 0.7, 1.0, 1.6}) {
-    const auto row = table_of(ball).row(draft);
-    EXPECT_NEAR(row->km_t, 1.0, 3e-3) << draft;
-    EXPECT_NEAR(row->km_l, 1.0, 3e-3) << draft;
-  }
-}
-
 // BM is about the waterplane's own centroid wherever B's origin lies.
 TEST(HydrostaticTable, DoesNotDependOnTheOriginOfTheMesh) {
   const TriangleMesh rock = make_shape(RockShape{.radius = 4, .frequency = 8, .roughness = 0.4, .seed = 6});

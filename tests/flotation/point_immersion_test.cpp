@@ -15,12 +15,6 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 const Water kWater;
 
-// Beam 20, depth 12, draught 6, KG 8 [m], with B's origin in the middle.
-struct BoxShip {
-  HydrostaticMesh mesh = mesh_of(BoxShape{{80, 20, 12}, {2, 2, 2}});
-  FloatingBody body = body_of(mesh, 0.5, Vec3(0, 0, 2));
-};
-
 TEST(PointImmersion, OfABoxHasItsClosedForm) {
   const BoxShip ship;
   // A wall-sided body turns about the middle of its waterplane until the deck edge is at the surface.

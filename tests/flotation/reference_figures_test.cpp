@@ -6,9 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "flotation/equilibrium.h"
 #include "flotation/hydrostatic_table.h"
-#include "flotation/righting_arms.h"
 #include "tests/flotation/bodies.h"
 #include "tests/hydrostatics/test_meshes.h"
 
@@ -33,25 +31,6 @@ HydrostaticRow row_of(const HydrostaticMesh& mesh, double draft, const Hydrostat
                       double trim = 0.0) {
   const FloatingBody body = body_of(mesh, 0.5);
   return HydrostaticTable::make(body, kWater, options).value().row(draft, trim).value();
-}
-
-// The number of stable attitudes of a square log over all relative densities: four on a side, eight tilted,
-// four on an edge, eight tilted, four on a side.
-TEST(ReferenceFigures, CountOfAttitudesOfTheSquareLogIsRightOverS) {
-  const HydrostaticMesh mesh = mesh_of(BoxShape{{8, 1, 1}, {4, 1, 1}});
-  const double side = (3.0 - std::sqrt(3.0)) / 6.0;
-  EXPECT_NEAR(side, 0.21132, 1e-5);
-  int compared = 0;
-  for (int i = 1; i < 200; ++i) {
-    const double density = i / 200.0;
-    const double s = std::min(density, 1.0 - density);
-    if (std::abs(s - side) < 1e-3 || std::abs(s - 9.0 / 32.0) < 1e-3) continue;
-    const bool is_tilted = s > side && s < 9.0 / 32.0;
-    EXPECT_EQ(find_equilibria(body_of(mesh, density), kWater).attitudes.size(), is_tilted ? 8U : 4U)
-        << density;
-    ++compared;
-  }
-  EXPECT_GT(compared, 190);
 }
 
 // A prism that stands on its base, with any number of sides.
@@ -128,39 +107,16 @@ TEST(ReferenceFigures, ConeOnItsApexHasItsClosedForm) {
   for (const int sides : {4, 7, 96}) {
     SCOPED_TRACE(sides);
     const HydrostaticMesh mesh = mesh_of(ConeShape{radius, height, sides, 3});
-    for (const double draft : {0.3, 1.2, 1.9}) {
+    // A part of 1e-9 of the volume keeps its digits.
+    for (const double draft : {2e-3, 0.3, 1.2, 1.9}) {
       const Polygon waterplane(sides, radius * draft / height);
       const HydrostaticRow row = row_of(mesh, draft, on_apex);
-      EXPECT_NEAR(row.volume, waterplane.area * draft / 3.0, 1e-13);
-      EXPECT_NEAR(row.kb, 0.75 * draft, 1e-12);
+      EXPECT_NEAR(row.volume / (waterplane.area * draft / 3.0), 1.0, draft < 0.01 ? 1e-9 : 1e-12);
+      EXPECT_NEAR(row.kb / draft, 0.75, draft < 0.01 ? 1e-9 : 1e-12);
+      if (draft < 0.01) continue;
       EXPECT_NEAR(row.bm_t, 3.0 * waterplane.second_moment / (waterplane.area * draft), 1e-12);
       EXPECT_NEAR(row.bm_l, row.bm_t, 1e-12);
     }
-  }
-}
-
-// A part of 1e-9 of the volume keeps its digits.
-TEST(ReferenceFigures, TipOfAConeHasItsClosedForm) {
-  HydrostaticTableOptions on_apex;
-  on_apex.axes = make_ship_axes(Vec3::UnitX(), -Vec3::UnitZ()).value();
-  const double draft = 2e-3;
-  const HydrostaticRow row = row_of(mesh_of(ConeShape{0.8, 2.0, 7, 3}), draft, on_apex);
-  const Polygon waterplane(7, 0.8 * draft / 2.0);
-  EXPECT_NEAR(row.volume / (waterplane.area * draft / 3.0), 1.0, 1e-9);
-  EXPECT_NEAR(row.kb / draft, 0.75, 1e-9);
-}
-
-// The metacentre of a sphere is its centre at every draught, to second order in the mesh.
-TEST(ReferenceFigures, SphereHasItsMetacentreAtTheCentre) {
-  for (const double draft : {0.3, 1.0, 1.7}) {
-    double last = std::numeric_limits<double>::infinity();
-    for (const int segments : {20, 40, 80}) {
-      const HydrostaticRow row = row_of(mesh_of(SphereShape{1.0, segments}), draft);
-      const double error = std::max(std::abs(row.km_t - 1.0), std::abs(row.km_l - 1.0));
-      EXPECT_LT(error, last / 3.0) << draft << ", " << segments;
-      last = error;
-    }
-    EXPECT_LT(last, 4e-3) << draft;
   }
 }
 
@@ -183,43 +139,6 @@ TEST(ReferenceFigures, LongitudinalRadiusIsAboutTheCentroidOfTheWaterplane) {
   EXPECT_NEAR(row.bm_t, row.bm_l, 1e-12);
   EXPECT_NEAR(row.bm_l, radius * radius / (8.0 * draft), 1e-12);
   EXPECT_GT(from_origin * from_origin / draft, row.bm_l);  // what the wrong one would add
-}
-
-// The figures of the Wigley hull on a fine mesh.
-TEST(ReferenceFigures, WigleyHullHasItsCoefficients) {
-  const WigleyShape hull{.segments = 256, .levels = 64};
-  const HydrostaticRow row = row_of(mesh_of(hull), hull.draft);
-  const double L = hull.length;
-  const double B = hull.beam;
-  const double T = hull.draft;
-  constexpr double kMesh = 1e-4;  // relative
-  EXPECT_NEAR(row.on_lpp.block, 4.0 / 9.0, kMesh);
-  EXPECT_NEAR(row.midship, 2.0 / 3.0, kMesh);
-  EXPECT_NEAR(row.on_lpp.prismatic, 2.0 / 3.0, kMesh);
-  EXPECT_NEAR(row.on_lpp.waterplane, 2.0 / 3.0, kMesh);
-  EXPECT_NEAR(row.volume, 4.0 * L * B * T / 9.0, kMesh * row.volume);
-  EXPECT_NEAR(row.kb, 5.0 * T / 8.0, kMesh * row.kb);
-  EXPECT_NEAR(row.bm_t, 3.0 * B * B / (35.0 * T), kMesh * row.bm_t);
-  EXPECT_NEAR(row.bm_l, 3.0 * L * L / (40.0 * T), kMesh * row.bm_l);
-}
-
-// tan^2 of the angle of loll is -2 GM/BM; GZ = sin a (GM + 1/2 BM tan^2 a) around it.
-TEST(ReferenceFigures, LollIsThatOfTheWallSidedFormula) {
-  const HydrostaticMesh mesh = mesh_of(BoxShape{{60, 20, 12}, {1, 1, 1}});
-  const double radius = 400.0 / 72.0;
-  for (const double height_of_mass : {8.6, 8.8, 9.1}) {
-    SCOPED_TRACE(height_of_mass);
-    const FloatingBody body = body_of(mesh, 0.5, Vec3(0, 0, height_of_mass - 6.0));
-    const double height = 3.0 + radius - height_of_mass;
-    const double loll = std::atan(std::sqrt(-2.0 * height / radius));
-    ASSERT_LT(10.0 * std::tan(loll), 6.0);  // the deck stays dry and the bottom wet
-    EXPECT_NEAR(righting_arm(body, kWater, loll)->gz, 0.0, 1e-13);
-    for (const double heel : {0.3 * loll, 1.2 * loll}) {
-      const double tangent = std::tan(heel);
-      EXPECT_NEAR(righting_arm(body, kWater, heel)->gz,
-                  std::sin(heel) * (height + 0.5 * radius * tangent * tangent), 1e-13);
-    }
-  }
 }
 
 }  // namespace

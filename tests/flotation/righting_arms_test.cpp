@@ -71,12 +71,6 @@ class SectionReference {
   double beam_, depth_, area_, mass_;
 };
 
-// Beam 20, depth 12, draught 6, KG 8 [m].
-struct BoxShip {
-  HydrostaticMesh mesh = mesh_of(BoxShape{{80, 20, 12}, {2, 2, 2}});
-  FloatingBody body = body_of(mesh, 0.5, Vec3(0, 0, 8.0 - 6.0));
-};
-
 std::vector<double> degrees(double from, double to, double step) {
   std::vector<double> heels;
   for (int i = 0; from + i * step <= to + 1e-9; ++i) heels.push_back((from + i * step) * kDegree);
@@ -100,29 +94,6 @@ TEST(RightingArms, OfABoxMatchAPolygonClipAtEveryHeel) {
     EXPECT_NEAR(arm.trim, 0.0, 1e-12);
     EXPECT_NEAR(with_fixed_trim->points[i].arm.gz, arm.gz, 1e-12);
   }
-}
-
-TEST(RightingArms, OfABoxAreThoseOfTheWallSidedFormula) {
-  const BoxShip ship;
-  const double radius = 400.0 / 72.0;
-  const double height = 3.0 + radius - 8.0;
-  const std::array<std::pair<double, double>, 8> expected{{{10, 0.11146824},
-                                                           {20, 0.315869218},
-                                                           {30, 0.740740741},
-                                                           {40, 0.972596655},
-                                                           {50, 0.638956531},
-                                                           {60, 0.067949192},
-                                                           {75, -0.959488704},
-                                                           {90, -2.0}}};
-  for (const auto& [heel, gz] : expected) {
-    const auto arm = righting_arm(ship.body, kWater, heel * kDegree);
-    ASSERT_TRUE(arm);
-    EXPECT_NEAR(arm->gz, gz, 1e-9) << heel;
-    if (heel > 30.0) continue;
-    const double tangent = std::tan(heel * kDegree);
-    EXPECT_NEAR(arm->gz, std::sin(heel * kDegree) * (height + 0.5 * radius * tangent * tangent), 1e-13);
-  }
-  EXPECT_NEAR(righting_arm(ship.body, kWater, 0.0)->draft, 6.0, 1e-13);
 }
 
 // The area does not depend on the step of the heel.
@@ -234,19 +205,6 @@ TEST(RightingArms, LeaveNoTrimmingMomentWithFreeTrim) {
     }
   }
   EXPECT_GT(std::abs(curve->points.back().arm.trim), 0.03);
-}
-
-TEST(RightingArms, OfASphereAreThoseOfItsCentreOfMass) {
-  const HydrostaticMesh mesh = mesh_of(SphereShape{1.0, 80});
-  const FloatingBody body = body_of(mesh, 0.5, Vec3(0, 0, -0.2));
-  const auto heels = degrees(-180, 180, 30);
-  RightingArmOptions options;
-  options.fixed_trim = 0.0;
-  const auto curve = righting_curve(body, kWater, heels, options);
-  ASSERT_TRUE(curve);
-  for (const RightingCurvePoint& point : curve->points) {
-    EXPECT_NEAR(point.arm.gz, 0.2 * std::sin(point.arm.heel), 2e-3);
-  }
 }
 
 TEST(RightingArms, AreAbsentForABodyThatSinks) {

@@ -10,6 +10,7 @@
 #include "flotation/righting_arms.h"
 #include "tests/flotation/bodies.h"
 #include "tests/hydrostatics/random_poses.h"
+#include "tests/hydrostatics/test_meshes.h"
 
 namespace buoyancy {
 namespace {
@@ -24,13 +25,7 @@ FloatingBody with_tanks(const HydrostaticMesh& hull, double mass, const Vec3& ce
 }
 
 HydrostaticMesh box_at(const BoxShape& shape, const Vec3& position_B) {
-  TriangleMesh mesh = make_shape(shape);
-  for (std::size_t i = 0; i < mesh.x.size(); ++i) {
-    mesh.x[i] += position_B.x();
-    mesh.y[i] += position_B.y();
-    mesh.z[i] += position_B.z();
-  }
-  return make_hydrostatic_mesh({mesh, {}});
+  return make_hydrostatic_mesh({moved_and_scaled(make_shape(shape), position_B), {}});
 }
 
 TEST(FloatingBodyWithTanks, HasTheGradientOfItsEnergy) {
@@ -57,42 +52,6 @@ TEST(FloatingBodyWithTanks, HasTheGradientOfItsEnergy) {
     const double force = -(energy(0.0, step) - energy(0.0, -step)) / (2.0 * step);
     EXPECT_NEAR(state.torque_W.dot(axis), torque, 0.1) << i;
     EXPECT_NEAR(state.force_W.dot(along), force, 0.1) << i;
-  }
-}
-
-TEST(FloatingBodyWithTanks, FloatsWhereItsEnergyIsLowest) {
-  RandomPoses random(52);
-  for (int i = 0; i < 12; ++i) {
-    const HydrostaticMesh hull =
-        mesh_of(RockShape{.radius = 2.0, .frequency = 6, .seed = 40U + static_cast<unsigned>(i)});
-    const HydrostaticMesh room = box_at({{0.8, 0.9, 1.0}}, 0.6 * random.direction());
-    const HydrostaticMesh first = box_at({{1.0, 0.8, 0.6}}, 0.7 * random.direction());
-    const HydrostaticMesh second = mesh_of(SphereShape{.radius = 0.5});
-    const std::vector<PlacedMesh> meshes{{.mesh = &hull}, {.mesh = &room, .factor = -0.8}};
-    const std::vector<Tank> tanks{
-        {.mesh = &first, .liquid_volume = random.uniform(0.05, 0.95) * first.volume, .density = 1025.0},
-        {.mesh = &second, .liquid_volume = random.uniform(0.05, 0.95) * second.volume, .density = 850.0}};
-    const FloatingBody body = FloatingBody::make(meshes, random.uniform(0.1, 0.7) * 1025.0 * hull.volume,
-                                                 0.3 * random.direction(), tanks)
-                                  .value();
-    const Equilibria found = find_equilibria(body, kWater);
-    ASSERT_EQ(found.outcome, FlotationOutcome::kFloats) << i;
-    ASSERT_FALSE(found.attitudes.empty()) << i;
-    for (const Equilibrium& at : found.attitudes) {
-      EXPECT_TRUE(at.is_stable());
-      EXPECT_LE(at.residual_force, at.force_bound);
-      EXPECT_LE(at.residual_torque, at.torque_bound);
-      // The bound is one of rounding, not one that anything would pass.
-      EXPECT_LE(at.torque_bound, 1e-9 * body.total_mass() * 9.8 * 2.0);
-      for (int direction = 0; direction < 20; ++direction) {
-        Pose moved = at.pose;
-        const Vec3 about = random.direction();
-        moved.q_WB = Eigen::Quaterniond(Eigen::AngleAxisd(2e-2, about)) * at.pose.q_WB;
-        moved.p_WB += 1e-3 * random.direction();
-        if (std::abs(about.z()) > 0.999) continue;
-        EXPECT_GT(floating_state(body, moved, kWater).value().energy, at.state.energy);
-      }
-    }
   }
 }
 
