@@ -116,14 +116,13 @@ std::string component_text(const ComponentReport& component) {
   return text;
 }
 
-// closing: of all holes, if it is known.
+// closing: that of all holes, if it is known.
 std::string hole_text(const HoleReport& hole, const std::optional<ClosingEstimate>& closing) {
   return pluralize(hole.edges, "edge", "edges") + ", from " + coordinates(hole.box.min_B) + " to " +
          coordinates(hole.box.max_B) + "; " + format_number(hole.perimeter, 4) + " m around, " +
          format_number(hole.area, 4) + " m^2, " + format_number(hole.bulge, 3) +
          " m^3 in a hemisphere over it" +
-         (closing ? ", " + percent(hole.bulge / closing->volume) + " of the volume when all are closed"
-                  : "") +
+         (closing ? ", " + percent(hole.bulge / closing->volume) + " of the closed volume" : "") +
          (hole.slit ? "; a slit" : "");
 }
 

@@ -313,7 +313,7 @@ Expected<BodyMass> mass_of_body(const Body& body, const Water& water) {
       return make_error({subject_of(body), "an open mesh without " + missing,
                          "mass, center_of_mass and inertia in [body.client]",
                          "a simulation needs them, and an open mesh encloses no volume to derive them from",
-                         "Set " + missing + ", or close the mesh"});
+                         "Set what is missing, or close the mesh"});
     }
   }
   const double density = spec.density.value_or(0.5 * water.density);

@@ -291,10 +291,11 @@ TEST_F(HydrostaticsProgram, TakesWaterScaleAndOpenPolicyWithAMesh) {
   EXPECT_NEAR(at.at("energy").get<double>(), 1.62 * 2000.0 * (0.2 - 0.25 + 0.125), 1e-9);
 
   open.front() = "gz";
+  open.insert(open.end(), {"--heel", "0:60:20"});
   const ProgramRun capsized = run(open);
   EXPECT_EQ(capsized.exit_code, 1);
-  // The edge goes under water at arctan(0.75 / 1) = 36.9 degrees.
-  EXPECT_NE(capsized.error.find("no balance at a heel of 40 degrees"), std::string::npos) << capsized.error;
+  // Heeled by 45 degrees it displaces a prism, up to its edge: 4 times 1 x 1 / 2 m^3.
+  EXPECT_NE(capsized.error.find("no balance at a heel of 60 degrees"), std::string::npos) << capsized.error;
   EXPECT_NE(capsized.error.find("takes in water"), std::string::npos) << capsized.error;
 }
 
