@@ -1,8 +1,11 @@
 #include "simulation/condition_schedule.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <random>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -97,16 +100,45 @@ TEST(ConditionSchedule, AnnouncesEveryConditionInTimeInSpiteOfLosses) {
   }
 }
 
-TEST(ConditionSchedule, AnnouncesEventsInQuickSuccessionSeveralTimes) {
-  const Scene scene = box_with(pump(1.0, 0.1) + pump(1.01, 0.4) + pump(1.03, 0.2));
-  ConditionSchedule schedule(scene, kStep);
-  std::map<double, int> announced;
-  for (std::int64_t step = 1; step < 110; ++step) {
-    for (const ConditionChange& change : schedule.announced_at(step)) ++announced[change.liquid_volume];
+// No announcement may take back a later one: an event is announced when the one before of its compartment or
+// tank has taken effect, and the more often the fewer requests are left.
+TEST(ConditionSchedule, AnnouncesAnEventOnlyAfterTheOneBefore) {
+  std::mt19937 random(11);
+  for (int run = 0; run < 50; ++run) {
+    struct Announcements {
+      std::int64_t first = 0;
+      std::int64_t last = 0;
+    };
+    std::map<double, Announcements> expected;  // by the event's value
+    std::string events;
+    for (int target = 0; target < 3; ++target) {
+      std::int64_t before = -1;
+      for (std::int64_t step = 1 + random() % 30; step < kRenewedSteps;
+           step += 1 + random() % (run % 2 == 0 ? 3 : 25)) {
+        const double value = static_cast<double>(expected.size() + 1) / 1000.0;
+        const double time = kStep * static_cast<double>(step);
+        events += target == 2 ? pump(time, value) : flood(time, target, value);
+        expected[value] = {std::max({std::int64_t{0}, before + 1, step - kAnnouncedSteps}), step};
+        before = step;
+      }
+    }
+    const Scene scene = box_with(events);
+    ConditionSchedule schedule(scene, kStep);
+    std::map<double, std::vector<std::int64_t>> announced;
+    for (std::int64_t step = 0; step < kRenewedSteps; ++step) {
+      for (const ConditionChange& change : schedule.announced_at(step))
+        announced[change.kind == ConditionKind::kTank ? change.liquid_volume : change.flooded].push_back(
+            step);
+    }
+    for (const auto& [value, of] : expected) {
+      const std::vector<std::int64_t>& steps = announced[value];
+      const std::int64_t requests = of.last - of.first + 1;
+      const std::int64_t copies = (kMinAnnouncements + requests - 1) / requests;
+      ASSERT_EQ(steps.size(), static_cast<std::size_t>(requests * copies)) << events;
+      EXPECT_EQ(steps.front(), of.first) << value << " of " << events;
+      EXPECT_EQ(steps.back(), of.last) << value << " of " << events;
+    }
   }
-  EXPECT_EQ(announced[0.1], kAnnouncedSteps + 1);
-  EXPECT_EQ(announced[0.4], kMinAnnouncements) << "with one request";
-  EXPECT_EQ(announced[0.2], kMinAnnouncements) << "with two requests";
 }
 
 // A client that never sends a request again reaches a service that was restarted all the same.
@@ -135,10 +167,7 @@ TEST(ConditionSchedule, ReplacesWhatAnEarlierRunLeftBehind) {
   std::vector<double> first;
   std::vector<double> second;
   for (std::vector<double>* forces : {&first, &second}) {
-    SimulationOptions options;
-    options.step = kStep;
-    options.session_id = forces == &first ? 1 : 2;
-    Simulation simulation = simulation_of(scene, options);
+    Simulation simulation = simulation_of(scene, {.step = kStep, .session_id = forces == &first ? 1 : 2});
     const std::atomic<bool> never{false};
     const auto outcome = run(simulation, service, 100, never, [&](const Simulation& now) {
       forces->push_back(now.bodies()[0].wrench.force[2]);
@@ -155,16 +184,15 @@ TEST(ConditionSchedule, ReplacesWhatAnEarlierRunLeftBehind) {
 TEST(SimulatedEvents, FloodTheBodyAtTheirTime) {
   const Scene scene = box_with(flood(0.5, 0, 1.0));
   const Scene intact = box_with("");
-  SimulationOptions options;
-  options.step = kStep;
-  Simulation damaged = simulation_of(scene, options);
-  Simulation undamaged = simulation_of(intact, options);
   std::vector<double> volumes;
   std::vector<double> expected;
-  run_in_process(scene, damaged, 50,
-                 [&](const Simulation& now) { volumes.push_back(now.bodies()[0].wrench.submerged_volume); });
-  run_in_process(intact, undamaged, 50,
-                 [&](const Simulation& now) { expected.push_back(now.bodies()[0].wrench.submerged_volume); });
+  for (const auto& [of, at_steps] : {std::pair{&scene, &volumes}, std::pair{&intact, &expected}}) {
+    std::vector<double>& observed = *at_steps;
+    Simulation simulation = simulation_of(*of, {.step = kStep});
+    run_in_process(*of, simulation, 50, [&](const Simulation& now) {
+      observed.push_back(now.bodies()[0].wrench.submerged_volume);
+    });
+  }
   for (std::size_t i = 0; i < 50; ++i) EXPECT_EQ(volumes[i], expected[i]) << i;
   EXPECT_LT(volumes[50], 0.8 * expected[50]);
 }
@@ -174,10 +202,8 @@ TEST(SimulatedEvents, PumpLiquidWithoutAPush) {
   const std::string spin = "linear_velocity = [1, 2, 0.5]\nangular_velocity = [0.3, -0.2, 0.1]\n";
   const Scene scene = box_with(pump(0.01, 0.0), spin);
   const Scene still = box_with("", spin);
-  SimulationOptions options;
-  options.step = kStep;
-  Simulation pumped = simulation_of(scene, options);
-  Simulation same = simulation_of(still, options);
+  Simulation pumped = simulation_of(scene, {.step = kStep});
+  Simulation same = simulation_of(still, {.step = kStep});
   for (const auto& [simulation, of] : {std::pair{&pumped, &scene}, std::pair{&same, &still}}) {
     run_in_process(*of, *simulation, 0);
     simulation->advance();
@@ -196,10 +222,7 @@ TEST(SimulatedEvents, PumpLiquidWithoutAPush) {
 
 TEST(SimulatedEvents, BeginTheEnergyAnew) {
   const Scene scene = box_with(flood(1.0, 0, 1.0) + pump(2.0, 0.5));
-  SimulationOptions options;
-  options.step = 0.002;
-  Simulation simulation = simulation_of(scene, options);
-  run_in_process(scene, simulation, 5000);
+  const Simulation simulation = simulation_after(scene, {.step = 0.002}, 5000);
   EXPECT_FALSE(energy_warning(simulation));
   const EnergyStats& energy = simulation.bodies()[0].energy;
   EXPECT_LT(energy.max - energy.min, 1e-3 * energy.max_kinetic);
@@ -213,10 +236,7 @@ TEST(SimulatedEvents, KeepAddedMassAndDragInStep) {
       "[body.added_mass]\nmatrix = [500, 500, 3000, 300, 900, 900]\nimmersion = \"none\"\n"
       "[body.client]\ndensity = 400\nstart = \"equilibrium\"\n" +
       pump(1.0, 0.5));
-  SimulationOptions options;
-  options.step = 0.002;
-  Simulation simulation = simulation_of(scene, options);
-  run_in_process(scene, simulation, 10'000);
+  const Simulation simulation = simulation_after(scene, {.step = 0.002}, 10'000);
   const EnergyStats& energy = simulation.bodies()[0].energy;
   EXPECT_GT(energy.max_kinetic, 1.0) << "it bobs after the tank is filled";
   EXPECT_LT(energy.max - energy.min, 1e-3 * energy.max_kinetic);

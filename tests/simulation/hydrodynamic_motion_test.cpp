@@ -15,15 +15,6 @@
 namespace buoyancy {
 namespace {
 
-constexpr Integrator kBoth[] = {Integrator::kSemiImplicitEuler, Integrator::kVelocityVerlet};
-
-SimulationOptions options_of(Integrator integrator, double step) {
-  SimulationOptions options;
-  options.integrator = integrator;
-  options.step = step;
-  return options;
-}
-
 // A heavy body under water, with every coefficient and all centres apart.
 std::string tumbling(double height, const std::string& more = "") {
   return R"(
@@ -54,9 +45,7 @@ angular_velocity = [0.4, -0.6, 0.8]
 }
 
 RigidBodyState state_after(const Scene& scene, const SimulationOptions& options, std::int64_t steps) {
-  Simulation simulation = simulation_of(scene, options);
-  run_in_process(scene, simulation, steps);
-  return simulation.bodies().front().state;
+  return simulation_after(scene, options, steps).bodies().front().state;
 }
 
 double distance(const RigidBodyState& a, const RigidBodyState& b) {
@@ -147,9 +136,10 @@ class Submerged {
 TEST(HydrodynamicMotion, FollowsKirchhoffsEquationsWithItsOrder) {
   const Scene scene = scene_of(tumbling(-50.0));
   const RigidBodyState expected = Submerged(scene).after(2.0, 4000);
-  for (const Integrator integrator : kBoth) {
-    const double coarse = distance(state_after(scene, options_of(integrator, 0.02), 100), expected);
-    const double fine = distance(state_after(scene, options_of(integrator, 0.01), 200), expected);
+  for (const Integrator integrator : kBothIntegrators) {
+    const double coarse =
+        distance(state_after(scene, {.step = 0.02, .integrator = integrator}, 100), expected);
+    const double fine = distance(state_after(scene, {.step = 0.01, .integrator = integrator}, 200), expected);
     const bool verlet = integrator == Integrator::kVelocityVerlet;
     EXPECT_LT(fine, verlet ? 2e-3 : 5e-2);
     EXPECT_NEAR(std::log2(coarse / fine), verlet ? 2.0 : 1.0, 0.15) << to_string(integrator);
@@ -159,9 +149,7 @@ TEST(HydrodynamicMotion, FollowsKirchhoffsEquationsWithItsOrder) {
 TEST(HydrodynamicMotion, ConvergesWithOrderTwoThroughTheSurface) {
   // The immersion changes, and with it the added mass.
   const Scene scene = scene_of(tumbling(0.15, "linear_velocity = [0.5, 0.2, -1]\n"));
-  const auto after = [&](int steps) {
-    return state_after(scene, options_of(Integrator::kVelocityVerlet, 0.5 / steps), steps);
-  };
+  const auto after = [&](int steps) { return state_after(scene, {.step = 0.5 / steps}, steps); };
   const RigidBodyState reference = after(16'000);
   EXPECT_NEAR(std::log2(distance(after(500), reference) / distance(after(1000), reference)), 2.0, 0.2);
 }
@@ -171,9 +159,9 @@ TEST(HydrodynamicMotion, IsTheSameRelativeToACurrent) {
   const Scene still = scene_of(tumbling(-50.0));
   const Scene moving = scene_of("[water.current]\nvelocity = [0.5, -0.3, 0.1]\n" +
                                 tumbling(-50.0, "linear_velocity = [0.5, -0.3, 0.1]\n"));
-  for (const Integrator integrator : kBoth) {
-    const RigidBodyState expected = state_after(still, options_of(integrator, 0.01), 300);
-    RigidBodyState relative = state_after(moving, options_of(integrator, 0.01), 300);
+  for (const Integrator integrator : kBothIntegrators) {
+    const RigidBodyState expected = state_after(still, {.step = 0.01, .integrator = integrator}, 300);
+    RigidBodyState relative = state_after(moving, {.step = 0.01, .integrator = integrator}, 300);
     relative.velocity_W -= current;
     relative.center_W -= 3.0 * current;
     EXPECT_LT(distance(relative, expected), 1e-10) << to_string(integrator);
@@ -198,8 +186,8 @@ position = [0, 0, -50]
 linear_velocity = [1, 0.5, 0]
 angular_velocity = [0.4, -0.6, 0.8]
 )");
-  for (const Integrator integrator : kBoth) {
-    SimulationOptions options = options_of(integrator, 0.01);
+  for (const Integrator integrator : kBothIntegrators) {
+    SimulationOptions options{.step = 0.01, .integrator = integrator};
     const RigidBodyState expected = state_after(scene, options, 300);
     options.delay_steps = 7;
     EXPECT_LT(distance(state_after(scene, options, 300), expected), 1e-10) << to_string(integrator);
@@ -222,7 +210,7 @@ density = 400
 position = [0, 0, 0.7]
 linear_velocity = [1, 0, 0]
 )");
-  Simulation simulation = simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.002));
+  Simulation simulation = simulation_of(scene, {.step = 0.002});
   run_in_process(scene, simulation, 50'000);
   const EnergyStats& energy = simulation.bodies().front().energy;
   EXPECT_LT(energy.max - energy.min, 0.01 * energy.max_kinetic);
@@ -240,7 +228,7 @@ matrix = [60, 200, 300, 0, 0, 0]
       "[body.client]\ndensity = 1025\nposition = [0, 0, -50]\nlinear_velocity = [1, 0, 0]\n";
   const Scene damped = scene_of(body + client + "linear_damping = 40\n");
   const Scene dragged = scene_of(body + "[body.drag]\nlinear = [40, 40, 40, 0, 0, 0]\n" + client);
-  const SimulationOptions options = options_of(Integrator::kVelocityVerlet, 0.01);
+  const SimulationOptions options{.step = 0.01};
   const double velocity = state_after(damped, options, 200).velocity_W.x();
   EXPECT_NEAR(velocity, std::exp(-40.0 * 2.0 / (246.0 + 60.0)), 1e-5);
   EXPECT_NEAR(state_after(dragged, options, 200).velocity_W.x(), velocity, 1e-12);

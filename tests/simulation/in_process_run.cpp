@@ -23,4 +23,10 @@ void run_in_process(const Scene& scene, Simulation& simulation, std::int64_t ste
   if (!outcome) throw std::runtime_error(outcome.error().message());
 }
 
+Simulation simulation_after(const Scene& scene, const SimulationOptions& options, std::int64_t steps) {
+  Simulation simulation = simulation_of(scene, options);
+  run_in_process(scene, simulation, steps);
+  return simulation;
+}
+
 }  // namespace buoyancy

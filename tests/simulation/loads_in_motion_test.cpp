@@ -14,26 +14,11 @@
 namespace buoyancy {
 namespace {
 
-constexpr Integrator kBoth[] = {Integrator::kSemiImplicitEuler, Integrator::kVelocityVerlet};
 constexpr double kDensity = 1000.0;  // [kg/m^3], of the water
 const std::string kWater = "[water]\ndensity = 1000\n";
 
-SimulationOptions options_of(Integrator integrator, double step) {
-  SimulationOptions options;
-  options.integrator = integrator;
-  options.step = step;
-  return options;
-}
-
 const SimulatedBody& only_body(const Simulation& simulation) {
   return simulation.bodies().front();
-}
-
-// Runs a scene for `steps` steps.
-Simulation after(const Scene& scene, const SimulationOptions& options, std::int64_t steps) {
-  Simulation simulation = simulation_of(scene, options);
-  run_in_process(scene, simulation, steps);
-  return simulation;
 }
 
 TEST(Drag, GivesTerminalVelocityOfReleasedSphere) {
@@ -55,10 +40,11 @@ density = )" + std::to_string(density) +
     const double weight = (density - kDensity) * volume * kStandardGravity;  // in water
     // 15 v^2 + 2 v = weight.
     const double terminal = (std::sqrt(1.0 + 15.0 * std::abs(weight)) - 1.0) / 15.0;
-    for (const Integrator integrator : kBoth) {
+    for (const Integrator integrator : kBothIntegrators) {
       for (const double step : {0.001, 0.1}) {
         const auto steps = static_cast<std::int64_t>(std::lround(20.0 / step));
-        const Simulation simulation = after(scene, options_of(integrator, step), steps);
+        const Simulation simulation =
+            simulation_after(scene, {.step = step, .integrator = integrator}, steps);
         const SimulatedBody& body = only_body(simulation);
         EXPECT_NEAR(-body.state.velocity_W.z(), std::copysign(terminal, weight), 1e-6 * terminal)
             << density << ", " << step;
@@ -83,8 +69,8 @@ position = [0, 0, -50]
 linear_velocity = [3, 2, 1]
 angular_velocity = [0.3, 0.2, 0.1]
 )");
-  for (const Integrator integrator : kBoth) {
-    Simulation simulation = simulation_of(scene, options_of(integrator, 0.1));
+  for (const Integrator integrator : kBothIntegrators) {
+    Simulation simulation = simulation_of(scene, {.step = 0.1, .integrator = integrator});
     double before = INFINITY;
     double largest_growth = 0.0;
     run_in_process(scene, simulation, 100, [&](const Simulation& now) {
@@ -116,7 +102,7 @@ density = 1000
 position = [0, 0, -50]
 linear_velocity = [1, 0, 0]
 )");
-      Simulation simulation = simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.1));
+      Simulation simulation = simulation_of(scene, {.step = 0.1});
       double before = 1.0;
       bool decreases = true;
       run_in_process(scene, simulation, 50, [&](const Simulation& now) {
@@ -143,7 +129,7 @@ density = 500
 linear_velocity = [2, 0, 0]
 position = [0, 0, )" + std::to_string(height) +
                                  "]\n");
-    const Simulation simulation = after(scene, options_of(Integrator::kVelocityVerlet, 0.001), 1000);
+    const Simulation simulation = simulation_after(scene, {.step = 0.001}, 1000);
     const SimulatedBody& body = only_body(simulation);
     const double expected = height > 0.0 ? 2.0 : 2.0 * std::exp(-0.5 * 400.0 / 200.0);
     EXPECT_NEAR(body.state.velocity_W.x(), expected, 1e-6) << height;
@@ -167,7 +153,7 @@ matrix = [17, 17, 17, 0, 0, 0]
 density = 1000
 position = [0, 0, -20]
 )");
-  const Simulation simulation = after(scene, options_of(Integrator::kVelocityVerlet, 0.01), 3000);
+  const Simulation simulation = simulation_after(scene, {.step = 0.01}, 3000);
   const SimulatedBody& body = only_body(simulation);
   EXPECT_LT((body.state.velocity_W - Vec3(0.5, -0.2, 0.0)).norm(), 1e-9);
   const double weight = body.rigid.mass * kStandardGravity;
@@ -193,14 +179,14 @@ TEST(AddedMass, TurnsSlenderBodyBroadsideOn) {
   const Scene scene = scene_of(slender("angular_damping = 20\n"));
   const double step = 1e-4;
   // Munk's moment N = -(A22 - A11) u v, on the inertia of body and water.
-  const Simulation first = after(scene, options_of(Integrator::kVelocityVerlet, step), 1);
+  const Simulation first = simulation_after(scene, {.step = step}, 1);
   const double moment = -(170.0 - 10.0) * 1.0 * 0.2;
   EXPECT_NEAR(only_body(first).wrench.torque[2], moment, 1e-3 * std::abs(moment));
   const double inertia = 1000.0 * 0.18 * (4.0 + 0.09) / 12.0 + 50.0;
   const double rate = angular_velocity_W(only_body(first).rigid, only_body(first).state).z() / step;
   EXPECT_NEAR(rate, moment / inertia, 1e-3 * std::abs(moment / inertia));
 
-  const Simulation last = after(scene, options_of(Integrator::kVelocityVerlet, 0.01), 20'000);
+  const Simulation last = simulation_after(scene, {.step = 0.01}, 20'000);
   const Vec3 velocity_B = only_body(last).state.q_WB.conjugate() * only_body(last).state.velocity_W;
   EXPECT_LT(std::abs(velocity_B.x()), 0.02 * std::abs(velocity_B.y()));
 }
@@ -218,23 +204,15 @@ matrix = [0, 0, )" + added_mass +
 density = 500
 position = [0, 0, 0.002]
 )");
-  Simulation simulation = simulation_of(scene, options_of(Integrator::kVelocityVerlet, step));
-  double before = 0.0;
-  double first = 0.0;
-  double last = 0.0;
-  int periods = -1;
+  Simulation simulation = simulation_of(scene, {.step = step});
+  PeriodMeter meter;
   run_in_process(scene, simulation, steps, [&](const Simulation& now) {
-    const double height = only_body(now).state.center_W.z();
-    if (before < 0.0 && height >= 0.0) {
-      last = now.time() - step * height / (height - before);
-      if (++periods == 0) first = last;
-    }
-    before = height;
+    meter.update(only_body(now).state.center_W.z(), now.time(), step);
   });
-  EXPECT_GE(periods, 3);
+  EXPECT_GE(meter.periods(), 3);
   const SimulatedBody& body = only_body(simulation);
   EXPECT_LT(body.energy.max - body.energy.min, 1e-3 * body.energy.max_kinetic);
-  return (last - first) / periods;
+  return meter.mean();
 }
 
 TEST(AddedMass, LengthensHeavePeriod) {
@@ -277,7 +255,7 @@ position = [0, 0, -1]
 
   const Scene scene = scene_with("linear_velocity = [" + std::to_string(start.x()) + ", " +
                                  std::to_string(start.y()) + ", " + std::to_string(start.z()) + "]\n");
-  Simulation simulation = simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.01));
+  Simulation simulation = simulation_of(scene, {.step = 0.01});
   SeaSnapshot sea(*scene.sea());
   double largest = 0.0;
   run_in_process(scene, simulation, 1200, [&](const Simulation& now) {
@@ -322,7 +300,7 @@ center_of_mass = [0, 0, -0.1]
 inertia = [60, 180, 200]
 position = [0, 0, 0.05]
 )");
-    const Simulation simulation = after(scene, options_of(Integrator::kVelocityVerlet, 0.004), test.steps);
+    const Simulation simulation = simulation_after(scene, {.step = 0.004}, test.steps);
     const SimulatedBody& body = only_body(simulation);
     EXPECT_NEAR(pose_of(body.rigid, body.state).p_WB.x(), test.drift, 0.01 * std::abs(test.drift));
   }

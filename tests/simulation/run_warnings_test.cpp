@@ -13,8 +13,6 @@
 namespace buoyancy {
 namespace {
 
-constexpr Integrator kBoth[] = {Integrator::kSemiImplicitEuler, Integrator::kVelocityVerlet};
-
 // A plate of 1 x 1 x 0.2 m that heaves by half its draft: an exact harmonic oscillator, with heave as its
 // highest natural frequency.
 std::string plate(int id, double relative_density) {
@@ -31,13 +29,6 @@ double frequency_of_plate(double relative_density) {
   return std::sqrt(kStandardGravity / (0.2 * relative_density));
 }
 
-SimulationOptions options_of(Integrator integrator, double step) {
-  SimulationOptions options;
-  options.integrator = integrator;
-  options.step = step;
-  return options;
-}
-
 bool contains(const std::optional<Warning>& warning, const std::string& text) {
   return warning && warning->message().find(text) != std::string::npos;
 }
@@ -51,8 +42,8 @@ TEST(StepWarning, PredictsInstabilityFrom10HertzTo1Kilohertz) {
   for (const double relative_density : {0.5, 0.1, 0.02, 0.004}) {
     const Scene scene = scene_of(kWater + plate(1, relative_density));
     for (const double step : {0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1}) {
-      for (const Integrator integrator : kBoth) {
-        Simulation simulation = simulation_of(scene, options_of(integrator, step));
+      for (const Integrator integrator : kBothIntegrators) {
+        Simulation simulation = simulation_of(scene, {.step = step, .integrator = integrator});
         const double wh = frequency_of_plate(relative_density) * step;
         SCOPED_TRACE("w h = " + std::to_string(wh) + ", " + std::string(to_string(integrator)));
         const std::optional<Warning> warning = step_warning(simulation);
@@ -84,9 +75,9 @@ TEST(StepWarning, PredictsInstabilityFrom10HertzTo1Kilohertz) {
 
 TEST(StepWarning, RecommendsAcceptableStep) {
   for (const double lead_time : {0.0, 0.02, 1.0}) {
-    for (const Integrator integrator : kBoth) {
+    for (const Integrator integrator : kBothIntegrators) {
       const Scene scene = scene_of(kWater + plate(1, 0.02));
-      SimulationOptions options = options_of(integrator, 0.1);
+      SimulationOptions options{.step = 0.1, .integrator = integrator};
       options.lead_time = lead_time;
       const std::optional<Warning> warning = step_warning(simulation_of(scene, options));
       ASSERT_TRUE(warning);
@@ -103,8 +94,7 @@ TEST(StepWarning, RecommendsAcceptableStep) {
 
 TEST(StepWarning, NamesWorstBodyAndCountsOthers) {
   const Scene scene = scene_of(kWater + plate(1, 0.5) + plate(3, 0.02) + plate(2, 0.004) + plate(4, 0.02));
-  const std::optional<Warning> warning =
-      step_warning(simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.02)));
+  const std::optional<Warning> warning = step_warning(simulation_of(scene, {.step = 0.02}));
   ASSERT_TRUE(warning);
   EXPECT_EQ(warning->subject, "body 2 (plate 2) and 2 more");
   for (const char* figure : {"0.02 s", "111 rad/s", "2.21", "0.8 kg", "--step 0.0045"}) {
@@ -114,7 +104,7 @@ TEST(StepWarning, NamesWorstBodyAndCountsOthers) {
 
 TEST(StepWarning, AppliesToBodyAboveWater) {
   const Scene scene = scene_of(kWater + plate(1, 0.02) + "linear_velocity = [0, 0, 10]\n");
-  EXPECT_TRUE(step_warning(simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.02))));
+  EXPECT_TRUE(step_warning(simulation_of(scene, {.step = 0.02})));
 }
 
 TEST(StepWarning, IgnoresDamping) {
@@ -123,8 +113,8 @@ TEST(StepWarning, IgnoresDamping) {
   const Scene scene =
       scene_of(kWater + plate(1, 0.1) +
                "linear_damping = 1e9\nangular_damping = 1e9\nlinear_damping_quadratic = 1e9\n");
-  for (const Integrator integrator : kBoth) {
-    Simulation simulation = simulation_of(scene, options_of(integrator, step));
+  for (const Integrator integrator : kBothIntegrators) {
+    Simulation simulation = simulation_of(scene, {.step = step, .integrator = integrator});
     EXPECT_FALSE(step_warning(simulation));
     run_in_process(scene, simulation, 2000);
     EXPECT_LE(simulation.bodies().front().energy.max, simulation.bodies().front().energy.initial);
@@ -136,7 +126,7 @@ TEST(StepWarning, CountsAddedMass) {
   const double step = 0.03;
   const std::string body = kWater + plate(1, density);
   EXPECT_GT(frequency_of_plate(density) * step, kStabilityLimit);
-  const SimulationOptions options = options_of(Integrator::kVelocityVerlet, step);
+  const SimulationOptions options{.step = step};
   EXPECT_TRUE(step_warning(simulation_of(scene_of(body), options)));
   const Scene heavy =
       scene_of(body + "[body.added_mass]\nmatrix = [50, 50, 50, 9, 9, 9]\nimmersion = \"none\"\n");
@@ -151,12 +141,12 @@ TEST(StepWarning, AccountsForExcessLeadTime) {
   // Stability limits: h (h + 2 T) w^2 = 4 for semi-implicit Euler, h (h + 4 T) w^2 = 4 for Verlet.
   const double w = frequency_of_plate(0.1);
   const Scene scene = scene_of(kWater + plate(1, 0.1));
-  for (const Integrator integrator : kBoth) {
+  for (const Integrator integrator : kBothIntegrators) {
     for (const double lead_time : {0.2 / w, 3.0 / w}) {
       const double lead = (integrator == Integrator::kVelocityVerlet ? 2.0 : 1.0) * lead_time;
       const double limit = std::sqrt(lead * lead + 4.0 / (w * w)) - lead;
       for (const double factor : {0.97, 1.03}) {
-        SimulationOptions options = options_of(integrator, factor * limit);
+        SimulationOptions options{.step = factor * limit, .integrator = integrator};
         options.lead_time = lead_time;
         Simulation simulation = simulation_of(scene, options);
         const std::optional<Warning> warning = step_warning(simulation);
@@ -195,7 +185,7 @@ TEST(LatencyMonitor, WarnsOnceAboutMeanDelay) {
   const double w = frequency_of_plate(0.5);
   const double step = 0.02 / w;
   for (const std::int64_t delay_steps : {4, 6}) {
-    SimulationOptions options = options_of(Integrator::kVelocityVerlet, step);
+    SimulationOptions options{.step = step};
     options.delay_steps = delay_steps;
     Simulation simulation = simulation_of(scene, options);
     LatencyMonitor monitor;
@@ -218,9 +208,8 @@ TEST(EnergyWarning, IgnoresRoundingOfBodyAtRest) {
       "[water]\ndensity = 1000\nlevel = 1e3\n[[body]]\nid = 1\nshape = { type = \"box\", size = [1, 1, 0.3] "
       "}\n"
       "[body.client]\ndensity = 300\nposition = [0, 0, 1000.060000001]\n");
-  for (const Integrator integrator : kBoth) {
-    Simulation simulation = simulation_of(scene, options_of(integrator, 0.01));
-    run_in_process(scene, simulation, 20'000);
+  for (const Integrator integrator : kBothIntegrators) {
+    const Simulation simulation = simulation_after(scene, {.step = 0.01, .integrator = integrator}, 20'000);
     EXPECT_FALSE(energy_warning(simulation));
   }
 }
@@ -228,8 +217,7 @@ TEST(EnergyWarning, IgnoresRoundingOfBodyAtRest) {
 TEST(EnergyWarning, IgnoresWorkOfTheCurrent) {
   const std::string body = plate(1, 0.5) + "[body.drag]\nlinear = [900, 900, 900, 9, 9, 9]\n";
   const Scene scene = scene_of(kWater + "[water.current]\nvelocity = [1, 0, 0]\n" + body);
-  Simulation simulation = simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.01));
-  run_in_process(scene, simulation, 2000);
+  const Simulation simulation = simulation_after(scene, {.step = 0.01}, 2000);
   const EnergyStats& energy = simulation.bodies().front().energy;
   EXPECT_GT(energy.max - energy.initial, 0.5 * energy.max_kinetic);
   EXPECT_FALSE(energy_warning(simulation));
@@ -240,7 +228,7 @@ const std::string kRipples = "[[water.waves]]\ntype = \"regular\"\nheight = 0.02
 TEST(BedMonitor, WarnsOnceAboutEachBodyBelowTheBed) {
   const Scene scene =
       scene_of(kWater + "depth = 5\n" + kRipples + plate(1, 0.5) + plate(2, 1.5) + plate(3, 1.2));
-  Simulation simulation = simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.01));
+  Simulation simulation = simulation_of(scene, {.step = 0.01});
   BedMonitor monitor;
   std::vector<std::string> subjects;
   double time = 0.0;
@@ -258,7 +246,7 @@ TEST(BedMonitor, WarnsOnceAboutEachBodyBelowTheBed) {
 
 TEST(BedMonitor, KnowsNoBedInDeepWater) {
   const Scene scene = scene_of(kWater + kRipples + plate(1, 3.0));
-  Simulation simulation = simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.1));
+  Simulation simulation = simulation_of(scene, {.step = 0.1});
   BedMonitor monitor;
   run_in_process(scene, simulation, 100,
                  [&](const Simulation& now) { EXPECT_TRUE(monitor.update(now).empty()); });
@@ -281,7 +269,7 @@ TEST(EnergyLimit, AcceptsViolentMotions) {
     const Scene scene =
         scene_of(kWater + kRipples + "[[body]]\nid = 1\nshape = { type = \"box\", size = [1, 1, 0.2] }\n" +
                  "[body.client]\n" + body);
-    Simulation simulation = simulation_of(scene, options_of(Integrator::kVelocityVerlet, 0.002));
+    Simulation simulation = simulation_of(scene, {.step = 0.002});
     double fastest = 0.0;
     run_in_process(scene, simulation, 6000, [&](const Simulation& now) {
       fastest = std::max(fastest, now.bodies().front().state.velocity_W.norm());

@@ -19,10 +19,7 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 // Summary of the only body after `time` [s].
 BodySummary settled(const Scene& scene, double time, double step) {
-  SimulationOptions options;
-  options.step = step;
-  Simulation simulation = simulation_of(scene, options);
-  run_in_process(scene, simulation, std::llround(time / step));
+  const Simulation simulation = simulation_after(scene, {.step = step}, std::llround(time / step));
   return summarize(simulation.bodies().front(), scene.water());
 }
 

@@ -21,7 +21,6 @@
 namespace buoyancy {
 namespace {
 
-constexpr Integrator kBoth[] = {Integrator::kSemiImplicitEuler, Integrator::kVelocityVerlet};
 constexpr double kDensity = 1000.0;  // [kg/m^3], of the water
 
 // A box of 12 triangles and half the water's density, released a quarter of its draft above its equilibrium.
@@ -47,13 +46,6 @@ struct HeavingBox {
   }
 };
 
-SimulationOptions options_of(Integrator integrator, double step) {
-  SimulationOptions options;
-  options.integrator = integrator;
-  options.step = step;
-  return options;
-}
-
 double energy_error(const SimulatedBody& body) {
   return std::abs(body.energy.current - body.energy.initial);
 }
@@ -64,7 +56,7 @@ struct EnergyErrors {
 };
 
 EnergyErrors energy_errors(const Scene& scene, Integrator integrator, double step, std::int64_t steps) {
-  Simulation simulation = simulation_of(scene, options_of(integrator, step));
+  Simulation simulation = simulation_of(scene, {.step = step, .integrator = integrator});
   EnergyErrors errors;
   run_in_process(scene, simulation, steps, [&](const Simulation& now) {
     const double error = energy_error(now.bodies().front());
@@ -82,7 +74,7 @@ TEST(UndampedHeave, BoundsEnergyErrorOverOneMillionSteps) {
   const double wh = box.frequency() * step;
   StressCase stress("undamped heave, 1e6 steps: energy bounded", "the integrators' closed forms",
                     "the integrator's oscillation + 5 %; in the last tenth that of the first + 5 %");
-  for (const Integrator integrator : kBoth) {
+  for (const Integrator integrator : kBothIntegrators) {
     const EnergyErrors errors = energy_errors(scene, integrator, step, 1'000'000);
     const double oscillation = integrator == Integrator::kVelocityVerlet ? 0.25 * wh * wh : 0.5 * wh;
     const std::string at(to_string(integrator));
@@ -95,7 +87,7 @@ TEST(UndampedHeave, BoundsEnergyErrorWithRollAndPitch) {
   const Scene scene = scene_of(
       "[water]\ndensity = 1000\n[[body]]\nid = 1\nshape = { type = \"box\", size = [1, 0.8, 0.4] }\n"
       "[body.client]\ndensity = 500\nposition = [0, 3, 0.03]\norientation = [0.999, 0.03, 0.02, 0]\n");
-  for (const Integrator integrator : kBoth) {
+  for (const Integrator integrator : kBothIntegrators) {
     const EnergyErrors errors = energy_errors(scene, integrator, 0.01, 200'000);
     EXPECT_LT(errors.late, 1.1 * errors.early) << to_string(integrator);
   }
@@ -108,8 +100,8 @@ double fitted_order(Integrator integrator) {
   std::vector<double> x;
   std::vector<double> y;
   for (const int steps : {200, 400, 800, 1600, 3200}) {
-    Simulation simulation = simulation_of(scene, options_of(integrator, 1.0 / steps));
-    run_in_process(scene, simulation, steps);
+    const Simulation simulation =
+        simulation_after(scene, {.step = 1.0 / steps, .integrator = integrator}, steps);
     const RigidBodyState& state = simulation.bodies().front().state;
     const double height = box.amplitude() * std::cos(box.frequency());
     const double speed = -box.amplitude() * box.frequency() * std::sin(box.frequency());
@@ -141,25 +133,6 @@ TEST(UndampedHeave, ConvergesWithOrderOneOrTwo) {
   check(Integrator::kVelocityVerlet, 2.0);
 }
 
-// Measures the mean period from the first to the last upward crossing of the rest position.
-class PeriodMeter {
- public:
-  void update(double height, double time, double step) {
-    if (last_height_ < 0.0 && height >= 0.0) {
-      last_ = time - step * height / (height - last_height_);
-      if (++periods_ == 0) first_ = last_;
-    }
-    last_height_ = height;
-  }
-  double mean() const { return (last_ - first_) / periods_; }
-
- private:
-  double last_height_ = 0.0;
-  double first_ = 0.0;
-  double last_ = 0.0;
-  int periods_ = -1;
-};
-
 TEST(UndampedHeave, MatchesPeriodOfWallSidedBodies) {
   struct {
     std::string shape;
@@ -187,7 +160,7 @@ TEST(UndampedHeave, MatchesPeriodOfWallSidedBodies) {
           2.0 * std::numbers::pi * std::sqrt(mass / (kDensity * kStandardGravity * shape.area));
 
       const double step = 2e-3;
-      Simulation simulation = simulation_of(scene, options_of(Integrator::kVelocityVerlet, step));
+      Simulation simulation = simulation_of(scene, {.step = step});
       PeriodMeter meter;
       run_in_process(scene, simulation, 20'000, [&](const Simulation& now) {
         meter.update(now.bodies().front().state.center_W.z() - rest, now.time(), step);
@@ -210,7 +183,7 @@ struct DelayedRun {
 // Simulates one minute with wrenches that are `delay_steps` steps, together `delay` [s], late.
 DelayedRun delayed_run(const HeavingBox& box, Integrator integrator, std::int64_t delay_steps, double delay,
                        bool with_lead_time) {
-  SimulationOptions options = options_of(integrator, delay / static_cast<double>(delay_steps));
+  SimulationOptions options{.step = delay / static_cast<double>(delay_steps), .integrator = integrator};
   options.delay_steps = delay_steps;
   options.lead_time = with_lead_time ? delay : 0.0;
   const Scene scene = box.scene();
@@ -253,7 +226,7 @@ TEST(DelayedResponse, AddsEnergyWithoutLeadTime) {
   const double delay = std::log(3.0) / (60.0 * box.frequency() * box.frequency());
   StressCase stress("same delay without and with `lead_time`: energy threefold in 60 s, or unchanged",
                     "exp(w^2 delay t)", "+- 0.05; +- 0.01; a warning without");
-  for (const Integrator integrator : kBoth) {
+  for (const Integrator integrator : kBothIntegrators) {
     for (const std::int64_t delay_steps : {1, 5}) {
       const DelayedRun without_lead = delayed_run(box, integrator, delay_steps, delay, false);
       const std::string at =
@@ -267,7 +240,7 @@ TEST(DelayedResponse, AddsEnergyWithoutLeadTime) {
 }
 
 TEST(DelayedResponse, UsesFirstResponseUntilDelayHasPassed) {
-  SimulationOptions options = options_of(Integrator::kVelocityVerlet, 0.01);
+  SimulationOptions options{.step = 0.01};
   options.delay_steps = 3;
   const HeavingBox box;
   const Scene scene = box.scene();
@@ -287,7 +260,7 @@ TEST(DelayedResponse, ReportsEnergyOfCurrentPose) {
   const Scene scene = box.scene();
   for (const std::int64_t delay_steps : {0, 3}) {
     for (const double lead_time : {0.0, 0.03}) {
-      SimulationOptions options = options_of(Integrator::kVelocityVerlet, 0.01);
+      SimulationOptions options{.step = 0.01};
       options.delay_steps = delay_steps;
       options.lead_time = lead_time;
       Simulation simulation = simulation_of(scene, options);
