@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -23,6 +23,8 @@
 
 namespace buoyancy::testing {
 namespace {
+
+using ::testing::HasSubstr;
 
 ServiceOptions box(double density = 1025.0) {
   ServiceOptions options;
@@ -67,14 +69,20 @@ TEST(ServiceProcess, AnswersOnAnAddressOfItsOwn) {
 }
 
 TEST(ServiceProcess, StopsTheService) {
-  ServiceProcess service = started(box());
+  ServiceOptions options = box();
+  options.arguments = {"--mode", "latest"};
+  ServiceProcess service = started(options);
+  EXPECT_TRUE(service.wait_for_log("ready:", kWaitTimeout));
   EXPECT_TRUE(service.is_running());
   const int pid = service.pid();
+  EXPECT_EQ(kill(pid, SIGTERM), 0);
+  EXPECT_FALSE(service.wait_for_log("no such line", kWaitTimeout)) << "it ends with the service";
   EXPECT_EQ(service.stop(), 0);
   EXPECT_EQ(service.stop(), 0);
   EXPECT_FALSE(service.is_running());
   EXPECT_EQ(kill(pid, 0), -1);
-  EXPECT_NE(service.log().find("ready:"), std::string::npos);
+  EXPECT_THAT(service.log(), HasSubstr("latest"));
+  EXPECT_THAT(service.log(), HasSubstr("ready:"));
 }
 
 TEST(ServiceProcess, StopsTheServiceWithItsObject) {
@@ -95,44 +103,27 @@ TEST(ServiceProcess, OutlivesTheThreadThatStartedIt) {
   EXPECT_EQ(service->stop(), 0);
 }
 
-TEST(ServiceProcess, PassesArgumentsOn) {
-  ServiceOptions options = box();
-  options.arguments = {"--mode", "latest"};
-  ServiceProcess service = started(options);
-  EXPECT_NE(service.log().find("latest"), std::string::npos) << service.log();
-}
-
-TEST(ServiceProcess, WaitsForALineOfTheLog) {
-  ServiceProcess service = started(box());
-  EXPECT_TRUE(service.wait_for_log("ready:", kWaitTimeout));
-  EXPECT_EQ(kill(service.pid(), SIGTERM), 0);
-  EXPECT_FALSE(service.wait_for_log("no such line", kWaitTimeout));  // ends with the service
-  EXPECT_EQ(service.stop(), 0);
-}
-
 TEST(ServiceProcess, ReportsWhyTheServiceDidNotStart) {
   ServiceOptions options = box();
   options.scene_text += "[[body]]\nid = 1\nshape = { type = \"box\", size = [1, 1, 1] }\n";
   const std::string duplicate = error_of(options);
-  EXPECT_NE(duplicate.find("exit code 2"), std::string::npos) << duplicate;
-  EXPECT_NE(duplicate.find("the same id"), std::string::npos) << duplicate;
+  EXPECT_THAT(duplicate, HasSubstr("exit code 2"));
+  EXPECT_THAT(duplicate, HasSubstr("the same id"));
 
   options = box();
   options.program = "/no/such/buoyancyd";
-  EXPECT_NE(error_of(options).find("set $BUOYANCYD"), std::string::npos);
+  EXPECT_THAT(error_of(options), HasSubstr("set $BUOYANCYD"));
 
   options = box();
   options.scene = "scene.toml";
-  EXPECT_NE(error_of(options).find("one of scene and scene_text"), std::string::npos);
+  EXPECT_THAT(error_of(options), HasSubstr("one of scene and scene_text"));
   options.scene.clear();
   options.scene_text.clear();
-  EXPECT_NE(error_of(options).find("no scene"), std::string::npos);
-}
+  EXPECT_THAT(error_of(options), HasSubstr("no scene"));
 
-TEST(ServiceProcess, ReportsAServiceThatIsNotReady) {
-  ServiceOptions options = box();
+  options = box();
   options.program = "/bin/sleep";  // does not know --scene
-  EXPECT_NE(error_of(options).find("exit code 1"), std::string::npos);
+  EXPECT_THAT(error_of(options), HasSubstr("exit code 1"));
 }
 
 TEST(ServiceProcess, RemovesTheSceneThatItWrote) {
@@ -166,7 +157,7 @@ TEST(ServiceTest, PrintsTheLogOfAFailedTest) {
   const std::size_t log = failed.standard_output.find("The log of buoyancyd:");
   ASSERT_NE(log, std::string::npos) << failed.standard_output;
   EXPECT_NE(failed.standard_output.find("ready:", log), std::string::npos);
-  EXPECT_NE(failed.standard_output.find("buoyancyd ended with this exit code"), std::string::npos);
+  EXPECT_THAT(failed.standard_output, HasSubstr("buoyancyd ended with this exit code"));
 }
 
 // In a new network namespace the loopback is down and there is no route.
