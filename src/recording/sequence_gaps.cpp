@@ -91,9 +91,13 @@ std::vector<std::string> gap_lines(const SequenceGaps& gaps, const std::string& 
       }
     }
     const std::size_t more = session.gaps.size() - std::min(session.gaps.size(), kGapsPerLine);
-    lines.push_back("session " + std::to_string(session.session_id) + ": " + std::to_string(missing) + " " +
-                    what + " missing," + places +
-                    (more > 0 ? " and " + std::to_string(more) + " more gaps" : ""));
+    if (more > 0) places += " and " + std::to_string(more) + " more gaps";
+    std::string& line = lines.emplace_back("session " + std::to_string(session.session_id) + ": ");
+    line += std::to_string(missing);
+    line += " ";
+    line += what;
+    line += " missing,";
+    line += places;
   }
   return lines;
 }
