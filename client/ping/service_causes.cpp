@@ -12,8 +12,8 @@ namespace {
 
 void add_if_other(const char* name, double expected, double received, const char* unit,
                   std::vector<std::string>& causes) {
-  const double size = std::max(std::abs(expected), std::abs(received));
-  if (expected == received || std::abs(expected - received) <= 1e-12 * size) return;
+  const double size = std::max(std::abs(expected), std::abs(received));  // infinite: of a depth
+  if (expected == received || (std::isfinite(size) && std::abs(expected - received) <= 1e-12 * size)) return;
   causes.push_back(std::string("the service's sea has another ") + name + ": " + format_number(received, 6) +
                    " instead of " + format_number(expected, 6) + unit);
 }
@@ -27,6 +27,9 @@ void add_sea_causes(const SeaState& expected, const SeaState& received, std::vec
                static_cast<double>(received.time_origin), " us", causes);
   for (std::size_t i = 0; i < 3; ++i) {
     add_if_other("current", expected.current[i], received.current[i], " m/s", causes);
+  }
+  if (expected.wave_pressure != received.wave_pressure) {
+    causes.emplace_back("the service's sea has another wave_pressure");
   }
   if (expected.amplitude != received.amplitude || expected.angular_frequency != received.angular_frequency ||
       expected.direction != received.direction || expected.phase != received.phase) {

@@ -13,6 +13,7 @@
 #include "tests/service/running_service.h"
 #include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 
 namespace buoyancy::ping {
@@ -51,10 +52,6 @@ class PingRun {
   TempDir directory_;
   std::string scene_;
 };
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 // Responds as a service with this scene does, before `change` is applied to the bytes of each response.
 class ChangedResponses {
