@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 
 namespace buoyancy {
@@ -19,25 +20,43 @@ std::optional<std::uint8_t> hexadecimal_digit(char c) {
   return std::nullopt;
 }
 
-FuzzInput from_hexadecimal(const FuzzInput& text, const std::string& name) {
+FuzzInput read_bytes(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+FuzzInput bytes_of_digits(const std::string& digits, const std::string& name) {
   FuzzInput bytes;
-  std::optional<std::uint8_t> high;
-  bool in_comment = false;
-  for (const std::uint8_t character : text) {
-    const auto c = static_cast<char>(character);
-    if (c == '\n') in_comment = false;
-    if (c == '#') in_comment = true;
-    if (in_comment || c == '\n' || c == ' ') continue;
-    const std::optional<std::uint8_t> digit = hexadecimal_digit(c);
-    if (!digit) throw std::runtime_error(name + ": '" + c + "': expected a hexadecimal digit, 0-9 or a-f");
-    if (high) {
-      bytes.push_back(static_cast<std::uint8_t>(16U * *high + *digit));
-      high.reset();
-    } else {
-      high = digit;
+  for (std::size_t i = 0; i < digits.size(); i += 2) {
+    const std::optional<std::uint8_t> high = hexadecimal_digit(digits[i]);
+    const std::optional<std::uint8_t> low =
+        i + 1 < digits.size() ? hexadecimal_digit(digits[i + 1]) : std::nullopt;
+    if (!high || !low) {
+      throw std::runtime_error(name + ": '" + digits + "': expected pairs of hexadecimal digits, 0-9 or a-f");
+    }
+    bytes.push_back(static_cast<std::uint8_t>(16U * *high + *low));
+  }
+  return bytes;
+}
+
+FuzzInput read_hexadecimal(const std::filesystem::path& path) {
+  const FuzzInput text = read_bytes(path);
+  if (text.empty()) throw std::runtime_error(path.string() + ": is missing or empty");
+  FuzzInput bytes;
+  std::istringstream lines(std::string(text.begin(), text.end()));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    for (std::string word; words >> word;) {
+      const std::size_t star = word.find('*');
+      const FuzzInput part =
+          word[0] == '@'
+              ? read_hexadecimal(path.parent_path().parent_path() / "parts" / (word.substr(1) + ".hex"))
+              : bytes_of_digits(word.substr(star == std::string::npos ? 0 : star + 1), path.string());
+      for (std::size_t n = star == std::string::npos ? 1 : std::stoul(word); n > 0; --n) {
+        bytes.insert(bytes.end(), part.begin(), part.end());
+      }
     }
   }
-  if (high) throw std::runtime_error(name + ": odd number of hexadecimal digits; expected pairs");
   return bytes;
 }
 
@@ -100,11 +119,9 @@ void mutate_once(FuzzInput& input, const FuzzInput& other, Random& random) {
 std::vector<CorpusFile> read_corpus(const std::filesystem::path& directory) {
   std::vector<CorpusFile> files;
   for (const auto& entry : std::filesystem::directory_iterator(directory)) {
-    std::ifstream stream(entry.path(), std::ios::binary);
-    FuzzInput content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    const std::string name = entry.path().filename().string();
-    if (entry.path().extension() == ".hex") content = from_hexadecimal(content, name);
-    files.push_back({name, std::move(content)});
+    const bool is_text = entry.path().extension() == ".hex";
+    files.push_back({entry.path().filename().string(),
+                     is_text ? read_hexadecimal(entry.path()) : read_bytes(entry.path())});
   }
   if (files.empty()) throw std::runtime_error(directory.string() + ": contains no files; expected a corpus");
   std::sort(files.begin(), files.end(),

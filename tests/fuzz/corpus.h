@@ -1,7 +1,8 @@
 // The corpus in tests/fuzz/corpus: small inputs that seed the fuzzer, and inputs of former findings.
 //
-// A file contains the input's bytes, except files named *.hex: these are text, pairs of hexadecimal digits,
-// in which spaces and newlines are ignored and # starts a comment to the end of the line.
+// A file contains the input's bytes, except files named *.hex: these are text, words of pairs of hexadecimal
+// digits. 600*00 is a word that is repeated, @NAME the content of corpus/parts/NAME.hex, and # starts a
+// comment to the end of the line.
 #pragma once
 
 #include <cstdint>
