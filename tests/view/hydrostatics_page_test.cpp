@@ -12,6 +12,8 @@
 
 #include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
+#include "tests/support/contains.h"
+#include "tests/support/csv.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 #include "tests/view/page_test.h"
@@ -74,24 +76,7 @@ class HydrostaticsPage : public PageTest {
                         "--downflooding", "10,-10,8"});
   }
 
-  // A column of the CSV file.
-  static std::vector<double> recorded(const std::string& name) {
-    std::istringstream file(read_file(csv()));
-    std::string line;
-    const auto cells = [&line] {
-      std::vector<std::string> found;
-      std::istringstream stream(line);
-      for (std::string cell; std::getline(stream, cell, ',');) found.push_back(cell);
-      return found;
-    };
-    std::getline(file, line);
-    const std::vector<std::string> names = cells();
-    const auto position = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
-    std::vector<double> column;
-    while (std::getline(file, line)) column.push_back(std::stod(cells().at(position)));
-    return column;
-  }
-
+  static std::vector<double> recorded(const std::string& name) { return csv_column(read_file(csv()), name); }
   static std::vector<double> plotted(const std::string& plot, int series = 0) {
     return browser()
         .run("return Array.from(buoyancy_hydrostatics.plots[arguments[0]].series[arguments[1]].values)", plot,
@@ -166,8 +151,8 @@ TEST_F(HydrostaticsPage, PlotsRightingArmsAndMarksTheirLimits) {
   EXPECT_TRUE(has_mark("largest arm", results.at("max_starboard").at("heel")));
   EXPECT_TRUE(has_mark("deck edge", std::atan(0.6) / kRadiansPerDegree));
   EXPECT_TRUE(has_mark("downflooding", results.at("downflooding").at("starboard").at("heel")));
-  EXPECT_NE(text_of("#tables").find("area from 0 to downflooding at "), std::string::npos);
-  EXPECT_NE(text_of("#tables").find("not a class approval"), std::string::npos);
+  EXPECT_TRUE(contains(text_of("#tables"), "area from 0 to downflooding at "));
+  EXPECT_TRUE(contains(text_of("#tables"), "not a class approval"));
   EXPECT_EQ(browser().run("return document.querySelectorAll('#tables table').length"), 4);
 }
 
@@ -273,7 +258,7 @@ TEST_F(HydrostaticsPage, PicturesEveryStableAttitude) {
     EXPECT_EQ(text_of("#status").find("stable: heel "), 0U);
     EXPECT_NEAR(drawn(0, 0, 0)[2], stable[i].at("position")[2].get<double>(), 1e-6);
   }
-  EXPECT_NE(text_of("pre").find("orientation = ["), std::string::npos);
+  EXPECT_TRUE(contains(text_of("pre"), "orientation = ["));
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
   EXPECT_EQ(text_of("#title"), "scene.toml, log </script>: attitudes at rest");
 }
@@ -319,7 +304,7 @@ TEST_F(HydrostaticsPage, PlotsCurvesOfEachTrim) {
 TEST_F(HydrostaticsPage, SaysThatABodySinks) {
   const std::string heavy = std::string(kShip).replace(kShip.find("512.5"), 5, "2000");
   open(heavy, {"equilibrium"});
-  EXPECT_NE(text_of("#notices").find("The body sinks"), std::string::npos);
+  EXPECT_TRUE(contains(text_of("#notices"), "The body sinks"));
   EXPECT_EQ(browser().run("return document.getElementById('stage').offsetHeight"), 0);
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
@@ -333,10 +318,10 @@ density = 500
 )",
        {"table", "--draft", "1"});
   EXPECT_LT(read_file(page()).size(), 5'000'000);
-  EXPECT_NE(text_of("#notices").find("The results are those of all 100,820."), std::string::npos);
+  EXPECT_TRUE(contains(text_of("#notices"), "The results are those of all 100,820."));
   open(kShip, {"gz", "--heel", "0:50:0.008"});
   EXPECT_LT(read_file(page()).size(), 5'000'000);
-  EXPECT_NE(text_of("#notices").find("5,000 rows of 6,251"), std::string::npos);
+  EXPECT_TRUE(contains(text_of("#notices"), "5,000 rows of 6,251"));
   const std::vector<double> all = recorded("kn");
   const std::vector<double> shown = plotted("kn");
   ASSERT_EQ(shown.size(), 5'000U);

@@ -117,21 +117,6 @@ TEST_F(LivePage, ShowsServiceOfflineWhilePaused) {
             nlohmann::json({true, renders}));
 }
 
-TEST_F(LivePage, WarnsAboutDifferentSceneName) {
-  const std::string warned =
-      "document.getElementById('notices').textContent.includes(\"The service's scene is other.toml\")";
-  browser().wait_until("window.buoyancyView && buoyancyView.last && buoyancyView.last.status");
-  browser().wait_until("document.querySelector('#strip').textContent.includes('lockstep')");
-  browser().wait_until("document.getElementById('notices').textContent === ''");
-  wait_for_snapshots(15);  // longer than until notices are drawn again
-  EXPECT_EQ(browser().run("return document.getElementById('notices').textContent;"), "")
-      << "the folder is ignored";
-  service_->child().send_signal(SIGKILL);
-  service_->write("other.toml", kScene);
-  ChildProcess other(command_of({built_program("buoyancyd"), "--scene", service_->path("other.toml")}));
-  browser().wait_until(warned);
-}
-
 TEST_F(LivePage, ShowsNoForceWithoutResponse) {
   browser().wait_until(
       "window.buoyancyView && buoyancyView.state === 'answering' && buoyancyView.renders > 1");
@@ -150,15 +135,6 @@ TEST_F(LivePage, ShowsNoForceWithoutResponse) {
   EXPECT_EQ(browser().run("return Array.from(document.querySelectorAll('#plots figure')).at(-1).className;"),
             "empty");
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
-}
-
-TEST_F(LivePage, NamesEveryBodyStatus) {
-  browser().wait_until("window.buoyancyView !== undefined");
-  EXPECT_EQ(browser().run("return status_text(buoyancyView.body_statuses, 0);"), "OK");
-  for (int i = 1; i < kBodyStatusCount; ++i) {
-    EXPECT_EQ(browser().run("return status_text(buoyancyView.body_statuses, arguments[0]).split(':')[0];", i),
-              to_string(static_cast<BodyStatus>(i)));
-  }
 }
 
 TEST_F(LivePage, ReconnectsToRestartedView) {

@@ -7,6 +7,7 @@
 
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
+#include "tests/support/contains.h"
 #include "tests/view/page_test.h"
 #include "tests/view/running_view.h"
 #include "tests/view/subdivided_hull.h"
@@ -46,11 +47,9 @@ TEST_F(LivePageOfTanks, DrawsLiquidsAndListsThem) {
   EXPECT_EQ(rows[0],
             nlohmann::json({"engine room", "compartment", "2", "permeability 0.85", "25", "–", "–"}));
   EXPECT_EQ(rows[2], nlohmann::json({"wide", "tank", "12", "1,000 kg/m³", "–", "6", "50"}));
-  EXPECT_NE(browser()
-                .run("return document.getElementById('legend').textContent;")
-                .get<std::string>()
-                .find("liquid in a tank"),
-            std::string::npos);
+  EXPECT_TRUE(
+      contains(browser().run("return document.getElementById('legend').textContent;").get<std::string>(),
+               "liquid in a tank"));
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
@@ -85,9 +84,9 @@ TEST_F(LivePageOfTanks, AddsNothingToPageOfOtherScenes) {
   ASSERT_NO_FATAL_FAILURE(open(kOneBoxScene));
   const auto script =
       browser().run("return fetch('page.js').then((response) => response.text());").get<std::string>();
-  EXPECT_NE(script.find("class WaterScene"), std::string::npos);
+  EXPECT_TRUE(contains(script, "class WaterScene"));
   for (const char* word : {"subdivision", "Subdivision", "show_observed_condition"}) {
-    EXPECT_EQ(script.find(word), std::string::npos) << word;
+    EXPECT_FALSE(contains(script, word));
   }
   EXPECT_EQ(browser().run("return buoyancyView.scene.bodies.get(1).drawn.material.transparent;"), false);
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});

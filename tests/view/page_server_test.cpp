@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "tests/support/contains.h"
 #include "tests/support/timeouts.h"
 #include "tests/view/http_peer.h"
 #include "tests/view/malformed_requests.h"
@@ -97,9 +98,9 @@ TEST_F(PageServerTest, ServesResourcesWithSecurityHeaders) {
   for (const char* header : {"\r\nCache-Control: no-store\r\n", "\r\nX-Content-Type-Options: nosniff\r\n",
                              "\r\nContent-Security-Policy: default-src 'none'; ",
                              "\r\nContent-Type: text/html; charset=utf-8\r\n"}) {
-    EXPECT_NE(page.find(header), std::string::npos) << header;
+    EXPECT_TRUE(contains(page, header));
   }
-  EXPECT_EQ(page.find("Access-Control-Allow-Origin"), std::string::npos);
+  EXPECT_FALSE(contains(page, "Access-Control-Allow-Origin"));
   EXPECT_TRUE(body(response_to(get_request("/model"))) == kModel);
 }
 
@@ -130,7 +131,7 @@ TEST_F(PageServerTest, RejectsMethodsOtherThanGet) {
 
 TEST_F(PageServerTest, SendsNoBodyInResponseToHead) {
   const std::string response = response_to("HEAD / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
-  EXPECT_NE(response.find("\r\nAllow: GET\r\n"), std::string::npos) << response;
+  EXPECT_TRUE(contains(response, "\r\nAllow: GET\r\n"));
   EXPECT_TRUE(response.ends_with("\r\n\r\n")) << response;
 }
 
@@ -207,8 +208,8 @@ TEST_F(PageServerTest, StreamsHistoryAndSnapshotsToAllListeners) {
       ASSERT_TRUE(part && !part->empty()) << text;
       text += *part;
     }
-    EXPECT_NE(text.find("Content-Type: text/event-stream\r\n"), std::string::npos);
-    EXPECT_NE(text.find("event: history\ndata: [1]\n\n"), std::string::npos);
+    EXPECT_TRUE(contains(text, "Content-Type: text/event-stream\r\n"));
+    EXPECT_TRUE(contains(text, "event: history\ndata: [1]\n\n"));
   }
   broadcaster_.publish("[2]", R"({"n":2})");
   std::string more;
@@ -217,7 +218,7 @@ TEST_F(PageServerTest, StreamsHistoryAndSnapshotsToAllListeners) {
     ASSERT_TRUE(part && !part->empty());
     more += *part;
   }
-  EXPECT_EQ(more.find("history"), std::string::npos) << "sent once per listener";
+  EXPECT_FALSE(contains(more, "history")) << "sent once per listener";
 }
 
 TEST_F(PageServerTest, StreamsInChunksUnlessClientIsOfHttp10) {
@@ -240,9 +241,9 @@ TEST_F(PageServerTest, StreamsInChunksUnlessClientIsOfHttp10) {
   broadcaster_.close();
   chunks += current.receive_all(kWaitTimeout);
   plain += old.receive_all(kWaitTimeout);
-  EXPECT_NE(chunks.find("\r\nTransfer-Encoding: chunked\r\n"), std::string::npos) << chunks;
+  EXPECT_TRUE(contains(chunks, "\r\nTransfer-Encoding: chunked\r\n"));
   EXPECT_EQ(body(chunks), "2f\r\n" + events + "\r\n0\r\n\r\n");
-  EXPECT_EQ(plain.find("Transfer-Encoding"), std::string::npos) << plain;
+  EXPECT_FALSE(contains(plain, "Transfer-Encoding"));
   EXPECT_EQ(body(plain), events);
 }
 
@@ -327,7 +328,7 @@ TEST_F(PageServerTest, RejectsStreamsBeyondLimit) {
   }
   const std::string refused = response_to(get_request("/events"));
   EXPECT_EQ(status_line(refused), "HTTP/1.1 503 Service Unavailable");
-  EXPECT_NE(body(refused).find("close one"), std::string::npos);
+  EXPECT_TRUE(contains(body(refused), "close one"));
   EXPECT_EQ(status_of(get_request("/model")), "HTTP/1.1 200 OK") << "other resources are still served";
 }
 
@@ -401,8 +402,7 @@ TEST_F(PageServerTest, ReportsPortInUse) {
   SnapshotBroadcaster other_broadcaster;
   const auto second = PageServer::start("127.0.0.1", port_, {}, other_broadcaster);
   ASSERT_FALSE(second);
-  EXPECT_NE(second.error().message().find("Address already in use"), std::string::npos)
-      << second.error().message();
+  EXPECT_TRUE(contains(second.error().message(), "Address already in use"));
 }
 
 // On a port outside the ephemeral range, which no other process gets after the server has stopped.
@@ -418,7 +418,7 @@ TEST_F(PageServerFixedPort, StopsWithOpenStreamsAndIncompleteRequests) {
   HttpPeer half(port_);
   half.send("GET /");
   server_.reset();
-  EXPECT_NE(stream.receive_all(kWaitTimeout).find("HTTP/1.1 200 OK"), std::string::npos);
+  EXPECT_TRUE(contains(stream.receive_all(kWaitTimeout), "HTTP/1.1 200 OK"));
   EXPECT_THROW(HttpPeer{port_}, std::runtime_error);
 }
 

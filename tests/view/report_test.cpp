@@ -14,6 +14,8 @@
 #include "tests/service/one_box_scene.h"
 #include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
+#include "tests/support/contains.h"
+#include "tests/support/csv.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 #include "tests/view/page_test.h"
@@ -64,23 +66,7 @@ class ReportPage : public PageTest {
     browser().wait_until("window.buoyancy_report !== undefined");
   }
 
-  // The recorded values of a column of the CSV file.
-  static std::vector<double> recorded(const std::string& name) {
-    std::ifstream file(csv());
-    std::string line;
-    std::getline(file, line);
-    const auto cells = [](const std::string& text) {
-      std::vector<std::string> found;
-      std::istringstream stream(text);
-      for (std::string cell; std::getline(stream, cell, ',');) found.push_back(cell);
-      return found;
-    };
-    const std::vector<std::string> names = cells(line);
-    const auto position = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
-    std::vector<double> column;
-    while (std::getline(file, line)) column.push_back(std::stod(cells(line).at(position)));
-    return column;
-  }
+  static std::vector<double> recorded(const std::string& name) { return csv_column(read_file(csv()), name); }
 
   static void go_to(double time) { browser().run("buoyancy_report.seek(arguments[0])", time); }
   static double time() { return browser().run("return buoyancy_report.state().time").get<double>(); }
@@ -146,29 +132,6 @@ TEST_F(ReportPage, MovesBodyWithSlider) {
   EXPECT_GT(browser().screenshot().share_changed(at_start, canvas), 0.01);
 }
 
-TEST_F(ReportPage, PlotsValuesOfRun) {
-  const auto shown = [](const std::string& plot, int series) {
-    return browser()
-        .run("return Array.from(buoyancy_report.plots[arguments[0]].series[arguments[1]].values)", plot,
-             series)
-        .get<std::vector<double>>();
-  };
-  EXPECT_EQ(shown("heave", 0), recorded("pz"));
-  EXPECT_EQ(shown("force", 0), recorded("fz"));
-  EXPECT_EQ(shown("torque", 1), recorded("tx"));
-  EXPECT_EQ(shown("energy", 0), recorded("energy"));
-  // The drawn path has the same values: its topmost point is the maximum, at the right time.
-  const nlohmann::json drawn = browser().run(R"(
-    const plot = buoyancy_report.plots.heave;
-    const points = plot.svg.querySelector('path').getAttribute('d').split(/[ML]/).slice(1).map((p) => p.split(' ').map(Number));
-    const top = points.reduce((a, b) => (b[1] < a[1] ? b : a));
-    return {count: points.length, time: plot.time(top[0])};)");
-  const std::vector<double> heave = recorded("pz");
-  EXPECT_EQ(drawn["count"], heave.size());
-  const auto highest = std::ranges::max_element(heave) - heave.begin();
-  EXPECT_NEAR(drawn["time"].get<double>(), 1e-3 * static_cast<double>(highest), 0.05);
-}
-
 TEST_F(ReportPage, SeeksToClickedTimeInPlot) {
   browser().run("document.querySelector('#plots figure:nth-of-type(2) svg').id = 'angles'");
   browser().click("#angles");
@@ -205,29 +168,6 @@ TEST_F(ReportPage, RotatesCameraOnDrag) {
   EXPECT_GT(browser().screenshot().share_changed(before, browser().region_of("#canvas")), 0.01);
 }
 
-TEST_F(ReportPage, ShowsMetacentreWithHydrostaticsOutput) {
-  go_to(5.0);
-  // BM = I / V about the softer axis, above the centre of the submerged part.
-  const double heave = recorded("pz").back();
-  const double draft = 2.0 - heave;
-  const double expected = -0.5 * draft + 3.0 * 8.0 / 12.0 / (6.0 * draft);
-  EXPECT_NEAR(
-      browser().run("return buoyancy_report.scene.bodies.get(1).markers.metacentre.position.z").get<double>(),
-      expected, 1e-3);
-}
-
-TEST_F(ReportPage, DescribesPlotsForScreenReaders) {
-  const auto labels = browser()
-                          .run(
-                              "return Array.from(document.querySelectorAll('#plots svg')).map((svg) => "
-                              "svg.getAttribute('role') + ': ' + svg.getAttribute('aria-label'))")
-                          .get<std::vector<std::string>>();
-  ASSERT_EQ(labels.size(), 6);
-  EXPECT_EQ(labels[0].find("img: Heave in m over time from 0 to 5 s: B's origin over the water from -1 to "),
-            0);
-  EXPECT_NE(labels[5].find("was not recorded"), std::string::npos);
-}
-
 TEST_F(ReportPage, DistinguishesDryAndWettedByLuminance) {
   const auto luminance = [](const std::string& name) {
     return browser()
@@ -256,7 +196,7 @@ TEST_F(ReportPage, RefusesToOverwriteInputAndInvalidThreeJs) {
   const FinishedProcess refused =
       report({"--scene", scene, csv(), directory.path("run.html"), "--three", directory.path("")});
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_NE(refused.standard_error.find("cannot be read"), std::string::npos) << refused.standard_error;
+  EXPECT_TRUE(contains(refused.standard_error, "cannot be read"));
 }
 
 TEST_F(ReportPage, FitsPhoneScreen) {
@@ -280,17 +220,6 @@ TEST_F(ReportPage, SeeksToTimeInUrlFragment) {
   browser().run("location.hash = '#t=-3'");
   browser().wait_until("buoyancy_report.state().time === 0");
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
-}
-
-TEST_F(ReportPage, KeepsMarkerSizeWhenZooming) {
-  const auto pixel = [] {
-    return browser()
-        .run("return buoyancy_report.scene.bodies.get(1).markers.metacentre.scale.x")
-        .get<double>();
-  };
-  const double before = pixel();
-  browser().run("buoyancy_report.scene.zoom(0.25)");
-  EXPECT_NEAR(pixel(), 0.25 * before, 0.05 * before);
 }
 
 // The columns of buoyancy-client --csv without the velocities.
@@ -361,40 +290,6 @@ TEST_F(ReportPage, OmitsStatusTableIfAllRowsAreOk) {
             false);
 }
 
-TEST_F(ReportPage, ZoomsToSelectedBodySize) {
-  const TempDir directory;
-  const std::string scene = directory.write("two.toml", kTestWater + R"([[body]]
-id = 1
-shape = { type = "box", size = [200, 30, 20] }
-[[body]]
-id = 2
-shape = { type = "box", size = [0.5, 0.5, 0.5] }
-)");
-  const std::string run =
-      directory.write("run.csv", kRunHeader +
-                                     "0,1,0,100,0,1,0,0,0,0,0,0,6e8,0,0,0,1,0,0,-5,0\n"
-                                     "0,2,0,0,0,1,0,0,0,0,0,0,625,0,0,0,1,0,0,-0.125,0\n");
-  const FinishedProcess made = report({"--scene", scene, run, directory.path("run.html")});
-  ASSERT_EQ(made.exit_code, 0) << made.standard_error;
-  browser().open_file(directory.path("run.html"));
-  browser().wait_until("window.buoyancy_report !== undefined");
-  browser().run("buoyancy_report.select(2)");
-  const auto width = [] {
-    return browser()
-        .run(
-            "return buoyancy_report.scene.project([0.25, 0.25, 0])[0] - "
-            "buoyancy_report.scene.project([-0.25, -0.25, 0])[0]")
-        .get<double>();
-  };
-  EXPECT_GT(width(), 60.0) << "pixels";
-  EXPECT_EQ(browser().run("return buoyancy_report.scene.bodies.get(2).markers.force.visible"), true);
-  browser().run("buoyancy_report.scene.zoom(0.5)");
-  EXPECT_GT(width(), 120.0);
-  browser().run("buoyancy_report.select(1)");
-  EXPECT_GT(browser().run("return buoyancy_report.scene.distance").get<double>(), 200.0)
-      << "the same zoom relative to the ship's size";
-}
-
 TEST_F(ReportPage, ListsShownBodiesAndSummarizesOthers) {
   const TempDir directory;
   std::string text = kTestWater;
@@ -409,9 +304,8 @@ TEST_F(ReportPage, ListsShownBodiesAndSummarizesOthers) {
   const FinishedProcess made = report(
       {"--scene", directory.write("five.toml", text), "--bodies", "1,5", run, directory.path("run.html")});
   ASSERT_EQ(made.exit_code, 0) << made.standard_error;
-  EXPECT_NE(made.standard_output.find("2 bodies, 2 rows; 2 more bodies only as a summary (see --bodies)"),
-            std::string::npos)
-      << made.standard_output;
+  EXPECT_TRUE(
+      contains(made.standard_output, "2 bodies, 2 rows; 2 more bodies only as a summary (see --bodies)"));
   browser().open_file(directory.path("run.html"));
   browser().wait_until("window.buoyancy_report !== undefined");
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
@@ -440,8 +334,7 @@ TEST(ReportProgram, ExitsWith2OnInvalidArguments) {
       directory.write("run.csv", "utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n");
   const FinishedProcess no_scene = report({run, directory.path("page.html")});
   EXPECT_EQ(no_scene.exit_code, 2);
-  EXPECT_NE(no_scene.standard_error.find("--scene is required"), std::string::npos)
-      << no_scene.standard_error;
+  EXPECT_TRUE(contains(no_scene.standard_error, "--scene is required"));
   EXPECT_EQ(report({"--scene", scene, run, run}).exit_code, 2) << "RUN would be overwritten";
   EXPECT_EQ(report({"--scene", scene, "--bodies", "2", run, directory.path("page.html")}).exit_code, 2);
   EXPECT_EQ(report({"--scene", scene, directory.path("no.csv"), directory.path("page.html")}).exit_code, 2);
@@ -454,11 +347,11 @@ TEST(ReportProgram, ExitsWith1IfPageCannotBeWritten) {
       directory.write("run.csv", "utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n");
   const FinishedProcess full = report({"--scene", scene, run, "/dev/full"});
   EXPECT_EQ(full.exit_code, 1);
-  EXPECT_NE(full.standard_error.find("/dev/full"), std::string::npos);
+  EXPECT_TRUE(contains(full.standard_error, "/dev/full"));
   const FinishedProcess no_three =
       report({"--scene", scene, "--three", directory.path("none.js"), run, directory.path("page.html")});
   EXPECT_EQ(no_three.exit_code, 1);
-  EXPECT_NE(no_three.standard_error.find("libjs-three"), std::string::npos);
+  EXPECT_TRUE(contains(no_three.standard_error, "libjs-three"));
 }
 
 TEST(ReportProgram, WritesPageOfPartlyInvalidRunAndExitsWith1) {
@@ -468,8 +361,8 @@ TEST(ReportProgram, WritesPageOfPartlyInvalidRunAndExitsWith1) {
       directory.write("run.csv", "utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n</script>,1\n");
   const FinishedProcess finished = report({"--scene", scene, run, directory.path("page.html")});
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("line 3"), std::string::npos);
-  EXPECT_NE(read_file(directory.path("page.html")).find("line 3"), std::string::npos);
+  EXPECT_TRUE(contains(finished.standard_error, "line 3"));
+  EXPECT_TRUE(contains(read_file(directory.path("page.html")), "line 3"));
 }
 
 }  // namespace

@@ -18,11 +18,13 @@
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/service/one_box_scene.h"
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
 #include "view/report/body_list.h"
 #include "view/report/report_page.h"
+#include "view/report/run_builder.h"
 
 namespace buoyancy::view {
 namespace {
@@ -149,10 +151,10 @@ TEST_F(RunFileTest, ReadsPipe) {
 TEST_F(RunFileTest, RejectsFilesWithoutPoses) {
   const auto responses_only = read_csv("utime,body_id,status,fx,fy,fz\n0,1,0,0,0,0\n");
   ASSERT_FALSE(responses_only);
-  EXPECT_NE(responses_only.error().message().find("px, py, pz"), std::string::npos);
+  EXPECT_TRUE(contains(responses_only.error().message(), "px, py, pz"));
   const auto other_scene = read_csv("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,77,0,0,0,1,0,0,0\n");
   ASSERT_FALSE(other_scene);
-  EXPECT_NE(other_scene.error().message().find("1 rows, none about a body of test scene"), std::string::npos);
+  EXPECT_TRUE(contains(other_scene.error().message(), "1 rows, none about a body of test scene"));
   EXPECT_FALSE(read(directory_.write("run.txt", ""))) << "neither .csv nor .lcmlog";
   EXPECT_FALSE(read(directory_.path("missing.csv")));
   EXPECT_FALSE(read(directory_.path("missing.lcmlog")));
@@ -239,6 +241,51 @@ TEST_F(RunFileInWavesTest, ReceivesTheSeaOfTheLog) {
   EXPECT_NEAR(run.bodies[0].rows[1][kFx], force_at(request_at(1'000, 0.1)), 1e-3);
   ASSERT_EQ(run.warnings.size(), 1U);
   EXPECT_EQ(run.warnings[0].rfind("event at 2 us skipped: a message of the sea", 0), 0U) << run.warnings[0];
+}
+
+// Of states in order of arrival: late ones keep their place, a clock that restarts goes on after the last
+// time by the last step, again and again, and a session returns to its own clock.
+TEST(RunBuilder, MapsClocksToOneAxis) {
+  struct State {
+    std::int32_t body;
+    std::int64_t session, utime, time;  // [us]
+  };
+  constexpr std::int64_t kSecond = 1'000'000;
+  constexpr std::int64_t kDay = 86'400 * kSecond;
+  const std::vector<std::vector<State>> runs{
+      {{1, 1, 5 * kSecond, 0},
+       {1, 1, 7 * kSecond, 2 * kSecond},
+       {1, 1, 6'200'000, 1'200'000},    // late
+       {1, 1, 5'900'000, 4 * kSecond},  // more than a second behind the latest: a restart
+       {1, 1, 5'950'000, 4'050'000},
+       {1, 1, 1 * kSecond, 4'100'000},  // another one
+       {1, 1, 1'200'000, 4'300'000}},
+      {{1, 1, 0, 0}, {1, 1, 3 * kSecond, 3 * kSecond}, {1, 1, 2 * kSecond, 2 * kSecond}},
+      {{1, 1, 0, 0}, {1, 1, 3 * kSecond, 3 * kSecond}, {1, 1, 2 * kSecond - 1, 6 * kSecond}},
+      {{1, 1, 9, 0}, {1, 1, kDay + 9, kDay}, {1, 1, 2 * kDay + 9, 2 * kDay}},
+      {{1, 1, 9, 0}, {1, 1, kDay + 10, 0}},  // another clock
+      {{1, 1, 0, 0},
+       {1, 1, 1'000, 1'000},
+       {1, 2, 2'000, 2'000},  // of the same clock
+       {1, 3, 0, 3'000},      // of its own
+       {1, 3, 10, 3'010},
+       {1, 1, 2'500, 2'500},
+       {1, 4, 10, 3'020},  // at the last time of the clock before
+       {1, 3, 40, 3'040}},
+      {{1, 1, kSecond, 0},
+       {1, 1, 3 * kSecond, 2 * kSecond},
+       {2, 1, 2'500'000, 1'500'000},  // of another body, by the same clock
+       {2, 1, 4 * kSecond, 3 * kSecond},
+       {1, 1, 4 * kSecond, 3 * kSecond}},
+      {{1, 1, kSecond, 0}, {1, 1, 3 * kSecond, 2 * kSecond}, {2, 1, 9 * kDay, 2 * kSecond}}};
+  const Scene scene = scene_of(kOneBoxScene + "[[body]]\nid = 2\nshape = { type = \"box\" }\n");
+  for (std::size_t run = 0; run < runs.size(); ++run) {
+    RunBuilder builder(scene, 1'000);
+    for (std::size_t i = 0; i < runs[run].size(); ++i) {
+      const auto& [body, session, utime, time] = runs[run][i];
+      EXPECT_EQ(builder.time_of(body, session, utime), time) << "run " << run << ", state " << i;
+    }
+  }
 }
 
 TEST_F(RunFileTest, AppendsSessionWithRestartedClock) {
@@ -426,7 +473,7 @@ TEST_F(RunFileTest, RejectsPoseChannelsForCsv) {
   options_.poses = {.channels = {{"POSE", 1, ""}}};
   const auto rejected = read_csv("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,1,0,0,0,1,0,0,0\n");
   ASSERT_FALSE(rejected);
-  EXPECT_NE(rejected.error().message().find("CSV has no channels"), std::string::npos);
+  EXPECT_TRUE(contains(rejected.error().message(), "CSV has no channels"));
 }
 
 // Two more bodies than a page shows, with the ids 1 to 1,002.
@@ -503,10 +550,8 @@ TEST_F(RunFileManyBodies, RejectsRunWithoutSelectedBodies) {
   options_.bodies = body_list("1-10", scene_).value();
   const auto rejected = read("utime,body_id,px,py,pz,qw,qx,qy,qz\n0,77,0,0,0,1,0,0,0\n0,88,0,0,0,1,0,0,0\n");
   ASSERT_FALSE(rejected);
-  EXPECT_NE(
-      rejected.error().message().find("The run has rows about 2 bodies of the scene, the first with id 77"),
-      std::string::npos)
-      << rejected.error().message();
+  EXPECT_TRUE(contains(rejected.error().message(),
+                       "The run has rows about 2 bodies of the scene, the first with id 77"));
 }
 
 TEST_F(RunFileManyBodies, WritesAllBodiesToPageData) {
@@ -539,7 +584,7 @@ TEST_F(RunFileManyBodies, ParsesListsOfIdsAndRanges) {
            {"1-1002", "1002 bodies; expected at most 1000"}}) {
     const auto rejected = body_list(list, scene_);
     ASSERT_FALSE(rejected) << list;
-    EXPECT_NE(rejected.error().message().find(message), std::string::npos) << rejected.error().message();
+    EXPECT_TRUE(contains(rejected.error().message(), message));
   }
 }
 

@@ -12,6 +12,7 @@
 #include "messages/conversions.h"
 #include "messages/sea_state.h"
 #include "recording/event_log.h"
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
@@ -305,10 +306,10 @@ TEST(RunLoads, AddNothingToPageWithoutSuchBodies) {
                100, {})
           .value();
   const std::string data = report_data(scene, run, {.file = "run.csv", .version = "1"});
-  EXPECT_EQ(data.find("loads"), std::string::npos);
-  EXPECT_EQ(report_page(data, "three.js").find("class LoadPlots"), std::string::npos);
-  EXPECT_EQ(report_page(data, "three.js").find("<!-- loads"), std::string::npos);
-  EXPECT_NE(report_page(data, "three.js", {.loads = true}).find("class LoadPlots"), std::string::npos);
+  EXPECT_FALSE(contains(data, "loads"));
+  EXPECT_FALSE(contains(report_page(data, "three.js"), "class LoadPlots"));
+  EXPECT_FALSE(contains(report_page(data, "three.js"), "<!-- loads"));
+  EXPECT_TRUE(contains(report_page(data, "three.js", {.loads = true}), "class LoadPlots"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
@@ -82,7 +83,7 @@ TEST_F(RunSubdivisionTest, AppliesRecordedConditionsFromTheirUtimeOn) {
   EXPECT_NEAR(body.rows[1][kFz] - body.rows[0][kFz], -6.0 * kDensity * kGravity, 1e-6);
   EXPECT_NEAR(body.rows[2][kFz] - body.rows[1][kFz], -2.0 * 0.85 * 0.75 * 0.9 * kDensity * kGravity, 1e-6);
   ASSERT_EQ(run.warnings.size(), 1U);
-  EXPECT_NE(run.warnings[0].find("liquid_volume = 99"), std::string::npos) << run.warnings[0];
+  EXPECT_TRUE(contains(run.warnings[0], "liquid_volume = 99"));
 }
 
 TEST_F(RunSubdivisionTest, CountsLiquidsInEnergy) {
@@ -117,11 +118,11 @@ TEST(RunSubdivision, AddsNothingToPageWithoutCompartmentsAndTanks) {
   const std::string data = report_data(scene, run, {.file = "run.csv", .version = "1"});
   const std::string without = report_page(data, "three.js");
   for (const char* word : {"subdivision", "Subdivision", "LevelCut", "condition_of_row", "opacity;"}) {
-    EXPECT_EQ(without.find(word), std::string::npos) << word;
+    EXPECT_FALSE(contains(without, word));
   }
   const std::string with = report_page(data, "three.js", {.subdivision = true});
-  EXPECT_NE(with.find("class SubdivisionDrawing"), std::string::npos);
-  EXPECT_NE(with.find("new SubdivisionDrawing("), std::string::npos);
+  EXPECT_TRUE(contains(with, "class SubdivisionDrawing"));
+  EXPECT_TRUE(contains(with, "new SubdivisionDrawing("));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/support/build_paths.h"
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 #include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
@@ -287,7 +288,7 @@ TEST(ViewProgram, ReportsErrorsInOneLineAndExitCode) {
   const RunningView other(kScene);
   const FinishedProcess taken = run_view({"--scene", scene, "--port", std::to_string(other.port())});
   EXPECT_EQ(taken.exit_code, 1);
-  EXPECT_NE(taken.standard_error.find("Address already in use"), std::string::npos) << taken.standard_error;
+  EXPECT_TRUE(contains(taken.standard_error, "Address already in use"));
 }
 
 }  // namespace
