@@ -13,8 +13,8 @@
 
 namespace buoyancy::service {
 
-// One event per cause of rejection, per body status other than OK, and per other warning whose counter
-// whose counter has grown.
+// One event per cause of rejection, per body status other than OK, and per other warning whose
+// counter has grown.
 std::vector<LogEvent> warnings_since(const ServiceCounters& before, const ServiceCounters& now);
 
 // One event per kind of loss whose counter has grown.

@@ -10,6 +10,7 @@
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
+#include "tests/support/contains.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 
@@ -45,7 +46,7 @@ TEST(SpeedAccuracy, WritesOneRowPerMeasurement) {
   ASSERT_EQ(program.exit_code, 0) << program.standard_error;
   for (const char* const heading :
        {"### Speedup over methods that visit the whole mesh", "### Time, caches flushed before every query"})
-    EXPECT_NE(program.standard_output.find(heading), std::string::npos) << heading;
+    EXPECT_TRUE(contains(program.standard_output, heading));
 
   std::ifstream file(csv);
   std::string line;
@@ -90,7 +91,7 @@ TEST(SpeedAccuracy, ReportsUnwritableCsv) {
                   ""},
                  kRunTimeout);
   EXPECT_EQ(program.exit_code, 1);
-  EXPECT_NE(program.standard_error.find("/no/such/directory/rows.csv"), std::string::npos);
+  EXPECT_TRUE(contains(program.standard_error, "/no/such/directory/rows.csv"));
   const FinishedProcess full = run_to_end(
       {{built_program("speed_accuracy"), "--smoke", "--csv", "/dev/full"}, {}, "/dev/null", "", ""},
       kRunTimeout);

@@ -6,6 +6,7 @@
 
 #include "client/client.h"
 #include "tests/client/fake_service.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
@@ -35,12 +36,14 @@ TEST(ClientLoads, BelongToTheResponseInEitherOrder) {
   const FakeService service([](const WrenchRequest& request) {
     Responses responses = pair_of(request);
     if (request.id.seq % 2 == 0) std::swap(responses[0], responses[1]);
-    // Those of an earlier request and of another session are nobody's.
-    WrenchRequest other = request;
-    other.id.seq -= 1;
-    responses.insert(responses.begin(), encoded(loads_for(other, 7.0)));
-    other.id = {0, request.id.session_id + 1, request.id.seq};
-    responses.insert(responses.begin() + 1, encoded(loads_for(other, 8.0)));
+    // Those of an earlier request, of one that was not sent yet and of another session are nobody's.
+    for (const auto& [session, seq] : {std::pair{0, -1}, {0, 1}, {1, 0}}) {
+      WrenchRequest other = request;
+      other.id.session_id += session;
+      other.id.seq += seq;
+      responses.insert(responses.begin(), encoded(loads_for(other, 7.0)));
+      responses.insert(responses.begin(), encoded(response_to(other, 7.0)));
+    }
     return responses;
   });
   LockstepClient client(open_channel(kWithLoads), kTestRetryPolicy);
@@ -103,7 +106,7 @@ TEST(ClientLoads, NamesTheMissingOutputIfOnlyResponsesArrive) {
   const Expected<const WrenchResponse*> response = client.request(make_request(0));
   ASSERT_FALSE(response);
   for (const char* text : {"no loads for", "BUOYANCY_LOADS", "outputs = [\"wrench\", \"loads\"]"}) {
-    EXPECT_NE(response.error().message().find(text), std::string::npos) << response.error().message();
+    EXPECT_TRUE(contains(response.error().message(), text));
   }
 }
 
@@ -116,8 +119,7 @@ TEST(ClientLoads, RejectsLoadsOfOtherBodies) {
   LockstepClient client(open_channel(kWithLoads), kTestRetryPolicy);
   const Expected<const WrenchResponse*> response = client.request(make_request(0));
   ASSERT_FALSE(response);
-  EXPECT_NE(response.error().message().find("loads of body 9"), std::string::npos)
-      << response.error().message();
+  EXPECT_TRUE(contains(response.error().message(), "loads of body 9"));
 }
 
 TEST(ClientLoads, AreNotReceivedUnlessWaitedFor) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/client/fake_service.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
@@ -137,11 +138,10 @@ TEST(Client, WarnsBeforeResponsesThatDoNotFitItsReceiveBuffer) {
   const Expected<const WrenchResponse*> response = client.request(0, std::vector<BodyState>(10'000));
   ASSERT_FALSE(response);
   const std::string message = response.error().message();
-  EXPECT_NE(message.find("this program's receive buffer was full; it is too small for the response for 10000 "
-                         "bodies"),
-            std::string::npos)
-      << message;
-  EXPECT_NE(message.find("leave recv_buf_size out of the LCM URL"), std::string::npos) << message;
+  EXPECT_TRUE(contains(message,
+                       "this program's receive buffer was full; it is too small for the response for 10000 "
+                       "bodies"));
+  EXPECT_TRUE(contains(message, "leave recv_buf_size out of the LCM URL"));
 }
 
 TEST(Client, FindsFirstFailedBody) {
@@ -158,7 +158,7 @@ TEST(Client, ReportsInvalidUrl) {
   options.channel.lcm_url = "tcpq://localhost";
   const Expected<Client> client = Client::open(options);
   ASSERT_FALSE(client);
-  EXPECT_NE(client.error().message().find("tcpq://localhost"), std::string::npos) << client.error().message();
+  EXPECT_TRUE(contains(client.error().message(), "tcpq://localhost"));
 }
 
 }  // namespace

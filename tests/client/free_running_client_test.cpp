@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/client/fake_service.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
@@ -29,6 +30,29 @@ TEST(FreeRunningClient, ReturnsNewestResponseAndCountsItsLag) {
   EXPECT_GE(statistics.max_lag, 3);
   EXPECT_GE(statistics.unanswered, 3);
   EXPECT_GE(statistics.malformed, 1);
+}
+
+// The service answers after pauses of 0.4 s, and then no more.
+TEST(FreeRunningClient, FailsOnlyAfterOneSilenceLongerThanItsRetries) {
+  constexpr std::int64_t kPause = 8;
+  constexpr std::int64_t kLast = 40;
+  const FakeService service([](const WrenchRequest& request) {
+    if (request.id.seq % kPause != 0 || request.id.seq > kLast) return Responses{};
+    return Responses{encoded(response_to(request, static_cast<double>(request.id.seq)))};
+  });
+  FreeRunningClient client(open_channel(), {.timeout = 0.4, .max_retries = 4}, 0.05);
+  std::int64_t seq = 0;
+  for (; seq <= kLast; ++seq) {
+    const Expected<const WrenchResponse*> response = client.request(make_request(seq));
+    ASSERT_TRUE(response) << "after " << 0.05 * static_cast<double>(seq)
+                          << " s of pauses, each of 0.4 s: " << response.error().message();
+    EXPECT_LE((*response)->id.seq, seq);
+  }
+  Expected<const WrenchResponse*> response = client.request(make_request(seq));
+  while (response && seq < 10 * kLast) response = client.request(make_request(++seq));
+  ASSERT_FALSE(response);
+  EXPECT_GE(seq - kLast, 38) << "2 s";
+  EXPECT_TRUE(contains(response.error().message(), "no response for"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/client/fake_service.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
@@ -65,7 +66,7 @@ TEST(LockstepClient, StopsWaitingWhenInterrupted) {
   LockstepClient client(open_channel(options), {0.1, 1'000'000});
   const Expected<const WrenchResponse*> response = client.request(make_request(0));
   ASSERT_FALSE(response);
-  EXPECT_NE(response.error().message().find("cancelled"), std::string::npos);
+  EXPECT_TRUE(contains(response.error().message(), "cancelled"));
   EXPECT_EQ(client.statistics().unanswered, 0);
 }
 
@@ -74,7 +75,7 @@ TEST(LockstepClient, FailsAfterMaxRetries) {
   LockstepClient client(open_channel(), {0.05, 3});
   const Expected<const WrenchResponse*> response = client.request(make_request(0));
   ASSERT_FALSE(response);
-  EXPECT_NE(response.error().message().find(std::string(kStatesChannel)), std::string::npos);
+  EXPECT_TRUE(contains(response.error().message(), std::string(kStatesChannel)));
   EXPECT_EQ(client.statistics().retries, 3);
   EXPECT_EQ(client.statistics().unanswered, 1);
 }
@@ -93,8 +94,7 @@ TEST(LockstepClient, RejectsResponseWithOtherBodies) {
     LockstepClient client(open_channel(), kTestRetryPolicy);
     const Expected<const WrenchResponse*> response = client.request(make_request(0));
     ASSERT_FALSE(response);
-    EXPECT_NE(response.error().message().find("other bodies"), std::string::npos)
-        << response.error().message();
+    EXPECT_TRUE(contains(response.error().message(), "other bodies"));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/e2e/closed_loop.h"
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 #include "tests/support/timeouts.h"
 
@@ -33,8 +34,7 @@ TEST_F(BuoyancyClient, PrintsSummaryTable) {
   EXPECT_EQ(finished.standard_error, "") << "a progress bar is shown on terminals only";
   for (const char* text : {"crate", "draft", "heave", "roll", "pitch", "energy drift", "100 of 100", "p50",
                            "p99", "p99.9", "max", "retries 0", "unanswered 0", "late 0"}) {
-    EXPECT_NE(finished.standard_output.find(text), std::string::npos) << text << "\n"
-                                                                      << finished.standard_output;
+    EXPECT_TRUE(contains(finished.standard_output, text));
   }
 }
 
@@ -144,7 +144,7 @@ TEST_F(BuoyancyClient, EvaluatesWrenchAtLeadTime) {
 TEST_F(BuoyancyClient, FailsOnFullDisk) {
   const FinishedProcess finished = run({"--embedded", "--csv", "/dev/full"});
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("/dev/full"), std::string::npos) << finished.standard_error;
+  EXPECT_TRUE(contains(finished.standard_error, "/dev/full"));
   ChildCommand command = client_command(scene_, {"--embedded", "--duration", "0.01"});
   command.standard_output = "/dev/full";
   EXPECT_EQ(run_to_end(command, kRunTimeout).exit_code, 1);
@@ -154,7 +154,7 @@ TEST_F(BuoyancyClient, FailsBeforeRunIfCsvCannotBeCreated) {
   const std::string path = directory_.path("no_such_directory/run.csv");
   const FinishedProcess finished = run({"--embedded", "--csv", path});
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find(path), std::string::npos) << finished.standard_error;
+  EXPECT_TRUE(contains(finished.standard_error, path));
 }
 
 TEST_F(BuoyancyClient, RefusesToOverwriteSceneWithCsv) {
@@ -179,8 +179,8 @@ TEST_F(BuoyancyClient, EndsRunAtFailedBodyAndWritesItsRow) {
       run_to_end(client_command(path, {"--embedded", "--step", "0.01", "--csv", csv}), kRunTimeout);
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_EQ(finished.standard_output, "");
-  EXPECT_NE(finished.standard_error.find("body 1 (tray)"), std::string::npos) << finished.standard_error;
-  EXPECT_NE(finished.standard_error.find("OPEN_EDGE_WET"), std::string::npos) << finished.standard_error;
+  EXPECT_TRUE(contains(finished.standard_error, "body 1 (tray)"));
+  EXPECT_TRUE(contains(finished.standard_error, "OPEN_EDGE_WET"));
   EXPECT_NE(csv_column(read_file(csv), "status").back(), 0.0);
 }
 
@@ -203,12 +203,11 @@ TEST_F(BuoyancyClient, FailsOnDivergedMotionWithoutNonFiniteRows) {
     const FinishedProcess finished = run_to_end(client_command(path, options), kRunTimeout);
     EXPECT_EQ(finished.exit_code, 1) << test.client << finished.standard_output;
     EXPECT_EQ(finished.standard_output, "");
-    EXPECT_NE(finished.standard_error.find("body 1 (crate) at"), std::string::npos)
-        << finished.standard_error;
-    EXPECT_NE(finished.standard_error.find("smaller --step"), std::string::npos) << finished.standard_error;
+    EXPECT_TRUE(contains(finished.standard_error, "body 1 (crate) at"));
+    EXPECT_TRUE(contains(finished.standard_error, "smaller --step"));
     const std::string text = read_file(csv);
-    EXPECT_EQ(text.find("nan"), std::string::npos) << text;
-    EXPECT_EQ(text.find("inf"), std::string::npos) << text;
+    EXPECT_FALSE(contains(text, "nan"));
+    EXPECT_FALSE(contains(text, "inf"));
   }
 }
 
@@ -224,7 +223,7 @@ TEST_F(BuoyancyClient, EndsRunThatExplodesInWavesWithACompleteCsv) {
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_EQ(finished.standard_output, "");
   for (const char* text : {"body 1 (crate) at", "mechanical energy rose by", "at most", "smaller --step"}) {
-    EXPECT_NE(finished.standard_error.find(text), std::string::npos) << text << finished.standard_error;
+    EXPECT_TRUE(contains(finished.standard_error, text));
   }
   const std::string text = read_file(csv);
   EXPECT_EQ(text.back(), '\n');
@@ -240,8 +239,7 @@ TEST_F(BuoyancyClient, WarnsOnceAboutBodyBelowTheSeaBed) {
   const nlohmann::json summary =
       simulate_with_warnings(path, {"--embedded", "--step", "0.01", "--duration", "2"});
   ASSERT_EQ(summary["warnings"].size(), 1U) << summary["warnings"];
-  EXPECT_NE(std::string(summary["warnings"][0]).find("body 1 (crate): it is below the sea bed"),
-            std::string::npos);
+  EXPECT_TRUE(contains(std::string(summary["warnings"][0]), "body 1 (crate): it is below the sea bed"));
 }
 
 TEST_F(BuoyancyClient, WarnsAboutLargeStepBeforeAndEnergyAfterRun) {
@@ -253,17 +251,15 @@ TEST_F(BuoyancyClient, WarnsAboutLargeStepBeforeAndEnergyAfterRun) {
   const nlohmann::json summary =
       simulate_with_warnings(plate, {"--embedded", "--step", "0.05", "--duration", "20"});
   ASSERT_EQ(summary["warnings"].size(), 2U) << summary["warnings"];
-  EXPECT_NE(std::string(summary["warnings"][0]).find("body 1 (plate): step x frequency"), std::string::npos);
-  EXPECT_NE(std::string(summary["warnings"][0]).find("Use --step 0.007"), std::string::npos)
-      << summary["warnings"][0];
-  EXPECT_NE(std::string(summary["warnings"][1]).find("mechanical energy rose"), std::string::npos);
+  EXPECT_TRUE(contains(std::string(summary["warnings"][0]), "body 1 (plate): step x frequency"));
+  EXPECT_TRUE(contains(std::string(summary["warnings"][0]), "Use --step 0.007"));
+  EXPECT_TRUE(contains(std::string(summary["warnings"][1]), "mechanical energy rose"));
 
   const FinishedProcess table =
       run_to_end(client_command(plate, {"--embedded", "--step", "0.05", "--duration", "20"}), kRunTimeout);
   EXPECT_EQ(table.exit_code, 0);
-  EXPECT_NE(table.standard_output.find("warning     body 1 (plate): step"), std::string::npos)
-      << table.standard_output;
-  EXPECT_NE(table.standard_output.find("warning     body 1 (plate): mechanical"), std::string::npos);
+  EXPECT_TRUE(contains(table.standard_output, "warning body 1 (plate): step"));
+  EXPECT_TRUE(contains(table.standard_output, "warning body 1 (plate): mechanical"));
   simulate(plate, {"--embedded", "--step", "0.007", "--duration", "20"});
 }
 
@@ -286,10 +282,10 @@ TEST_F(BuoyancyClient, DelaysResponsesAndWarnsIfLeadTimeIsNotEnough) {
   const nlohmann::json without_lead = with({"--late", "1"});
   EXPECT_EQ(without_lead["delay_steps"], 1);
   ASSERT_EQ(without_lead["warnings"].size(), 1U) << without_lead["warnings"];
-  EXPECT_NE(std::string(without_lead["warnings"][0]).find("energy rose"), std::string::npos);
+  EXPECT_TRUE(contains(std::string(without_lead["warnings"][0]), "energy rose"));
   const nlohmann::json too_late = with({"--delay-steps", "20", "--lead-time", "0.02"});
   ASSERT_FALSE(too_late["warnings"].empty());
-  EXPECT_NE(std::string(too_late["warnings"][0]).find("response delay"), std::string::npos);
+  EXPECT_TRUE(contains(std::string(too_late["warnings"][0]), "response delay"));
 }
 
 TEST_F(BuoyancyClient, ExplainsInvalidArgumentsAndScenesAndExitsWith2) {
@@ -323,8 +319,7 @@ TEST_F(BuoyancyClient, ExplainsInvalidArgumentsAndScenesAndExitsWith2) {
   for (const auto& invalid : cases) {
     const FinishedProcess finished = run_to_end(client_command(invalid.scene, invalid.options), kRunTimeout);
     EXPECT_EQ(finished.exit_code, 2) << invalid.message;
-    EXPECT_NE(finished.standard_error.find(invalid.message), std::string::npos)
-        << invalid.message << ": " << finished.standard_error;
+    EXPECT_TRUE(contains(finished.standard_error, invalid.message)) << invalid.message << ": ";
   }
 }
 
@@ -335,7 +330,7 @@ TEST_F(BuoyancyClient, PrintsVersionAndHelp) {
   command.arguments.back() = "--help";
   const FinishedProcess help = run_to_end(command, kWaitTimeout);
   EXPECT_EQ(help.exit_code, 0);
-  EXPECT_NE(help.standard_output.find("--lead-time"), std::string::npos);
+  EXPECT_TRUE(contains(help.standard_output, "--lead-time"));
 }
 
 }  // namespace

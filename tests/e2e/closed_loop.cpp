@@ -99,21 +99,4 @@ nlohmann::json body(const nlohmann::json& summary, int id) {
   return {{"draft", NAN}, {"roll_deg", NAN}, {"energy_range", NAN}, {"energy_drift", NAN}};
 }
 
-std::vector<double> csv_column(const std::string& csv, const std::string& name) {
-  std::istringstream lines(csv);
-  std::string line;
-  std::getline(lines, line);
-  const std::size_t at = ("," + line + ",").find("," + name + ",");
-  EXPECT_NE(at, std::string::npos) << name;
-  const auto column = std::count(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(at), ',');
-  std::vector<double> values;
-  while (std::getline(lines, line)) {
-    std::istringstream fields(line);
-    std::string field;
-    for (std::ptrdiff_t i = 0; i <= column; ++i) std::getline(fields, field, ',');
-    values.push_back(std::stod(field));
-  }
-  return values;
-}
-
 }  // namespace buoyancy

@@ -11,6 +11,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "tests/support/child_process.h"
+#include "tests/support/csv.h"
 #include "tests/support/temp_dir.h"
 
 namespace buoyancy {
@@ -46,8 +47,5 @@ std::string embedded_csv(const TempDir& directory, const std::string& scene, std
 
 // The body with this id in a summary.
 nlohmann::json body(const nlohmann::json& summary, int id);
-
-// A column of a CSV file, one number per row.
-std::vector<double> csv_column(const std::string& csv, const std::string& name);
 
 }  // namespace buoyancy

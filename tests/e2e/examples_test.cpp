@@ -14,6 +14,7 @@
 #include "scene/scene.h"
 #include "tests/e2e/closed_loop.h"
 #include "tests/support/build_paths.h"
+#include "tests/support/contains.h"
 #include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
 
@@ -312,14 +313,14 @@ TEST(Examples, MujocoModelWithoutWetBodiesIsRefused) {
   const std::string model = directory.write("dry.xml", "<mujoco><worldbody><body/></worldbody></mujoco>");
   const FinishedProcess run = run_to_end(command_of({MUJOCO_BODIES, model, "memq://"}), kRunTimeout);
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_NE(run.standard_error.find("user attribute"), std::string::npos) << run.standard_error;
+  EXPECT_TRUE(contains(run.standard_error, "user attribute"));
 }
 
 TEST(Examples, ReportMissingService) {
   if (*BULLET_CRATE == '\0') GTEST_SKIP() << kNoBullet;  // the engine is optional for a build
   const FinishedProcess run = run_to_end(command_of({BULLET_CRATE, "memq://", kStep, "3"}), kRunTimeout);
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_NE(run.standard_error.find("no buoyancyd is running"), std::string::npos) << run.standard_error;
+  EXPECT_TRUE(contains(run.standard_error, "no buoyancyd is running"));
 }
 
 // Runs round_trip.py with the types that lcm-gen generates.

@@ -8,6 +8,7 @@
 
 #include "tests/e2e/closed_loop.h"
 #include "tests/e2e/lossy_relay.h"
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 #include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
@@ -142,8 +143,7 @@ TEST_F(Lockstep, FailsWithoutServiceAndNamesEndpoint) {
   EXPECT_EQ(finished.standard_output, "");
   for (const char* text :
        {"request 0", "no response", "buoyancyd", kServiceUrl, "SOME_STATES", "SOME_WRENCHES"}) {
-    EXPECT_NE(finished.standard_error.find(text), std::string::npos)
-        << text << ": " << finished.standard_error;
+    EXPECT_TRUE(contains(finished.standard_error, text)) << text << ": ";
   }
 }
 
@@ -152,8 +152,8 @@ TEST_F(Lockstep, NamesBodyAndStatusIfServiceHasDifferentScene) {
   const RunningProgram service(service_command(other, {"-l", kServiceUrl}));
   const FinishedProcess finished = run_to_end(client_command(scene_, {"-l", kServiceUrl}), kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("body 8 (crate)"), std::string::npos) << finished.standard_error;
-  EXPECT_NE(finished.standard_error.find("UNKNOWN_BODY"), std::string::npos) << finished.standard_error;
+  EXPECT_TRUE(contains(finished.standard_error, "body 8 (crate)"));
+  EXPECT_TRUE(contains(finished.standard_error, "UNKNOWN_BODY"));
 }
 
 TEST_F(Lockstep, EndsOnSigintWithSummaryAndValidCsv) {
@@ -201,8 +201,7 @@ TEST_F(FreeRunning, UsesNewestResponseAndCountsLag) {
   EXPECT_GE(summary["wall_time"].get<double>(), 0.9);
   // The crate has a natural frequency of at least 5 rad/s: w times the delay is at least 0.2.
   ASSERT_FALSE(summary["warnings"].empty());
-  EXPECT_NE(std::string(summary["warnings"][0]).find("response delay"), std::string::npos)
-      << summary["warnings"];
+  EXPECT_TRUE(contains(std::string(summary["warnings"][0]), "response delay"));
 }
 
 TEST_F(FreeRunning, ContinuesWithOlderResponseAfterLoss) {
@@ -225,7 +224,7 @@ TEST_F(FreeRunning, FailsIfServiceDies) {
   ASSERT_TRUE(grows_to(csv, 20'000, client)) << client.standard_error();
   service.send_signal(SIGKILL);
   EXPECT_EQ(client.wait(kWaitTimeout), 1);
-  EXPECT_NE(client.standard_error().find("no response for"), std::string::npos) << client.standard_error();
+  EXPECT_TRUE(contains(client.standard_error(), "no response for"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "geometry/mirroring.h"
 #include "geometry/shapes.h"
 #include "tests/geometry/sample_meshes.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
@@ -94,10 +95,8 @@ TEST(HoleClosing, SaysWhatAnOpenMeshNeeds) {
   ASSERT_TRUE(refused.report.closing);
   EXPECT_NEAR(refused.report.closing->volume, 1.0, 1e-15);
   const std::string message = refused.refusal->message();
-  EXPECT_NE(message.find("buoyancy-mesh repair hull.stl OUTPUT.ply --rims, or close_holes = 1.1"),
-            std::string::npos)
-      << message;
-  EXPECT_NE(message.find("dry_boundary"), std::string::npos) << message;
+  EXPECT_TRUE(contains(message, "buoyancy-mesh repair hull.stl OUTPUT.ply --rims, or close_holes = 1.1"));
+  EXPECT_TRUE(contains(message, "dry_boundary"));
 }
 
 TEST(HoleClosing, WorksWithoutTheAutomaticRepair) {
@@ -182,8 +181,7 @@ TEST(HoleClosing, RefusesHalfABodyUntilItIsMirrored) {
     EXPECT_FALSE(refused.mesh);
     ASSERT_EQ(refused.report.repair.skipped.size(), 1U);
     EXPECT_EQ(refused.report.repair.skipped[0].obstacle, RepairObstacle::kDisagreement);
-    EXPECT_NE(refused.refusal->message().find("--mirror y --rims"), std::string::npos)
-        << refused.refusal->message();
+    EXPECT_TRUE(contains(refused.refusal->message(), "--mirror y --rims"));
   }
   const Expected<RepairStep> mirrored = add_mirror_image(half, Axis::kY, "half");
   ASSERT_TRUE(mirrored);
@@ -250,17 +248,15 @@ TEST(HoleClosing, AdvisesToMirrorAFlatHalf) {
   const MeshValidation refused = validate_mesh({half, {}}, "my half.obj", {});
   ASSERT_FALSE(refused.mesh);
   const std::string message = refused.refusal->message();
-  EXPECT_NE(message.find("buoyancy-mesh repair 'my half.obj' OUTPUT.ply --mirror y --rims"),
-            std::string::npos)
-      << message;
-  EXPECT_NE(message.find("Close them: "), std::string::npos) << message;
+  EXPECT_TRUE(contains(message, "buoyancy-mesh repair 'my half.obj' OUTPUT.ply --mirror y --rims"));
+  EXPECT_TRUE(contains(message, "Close them: "));
 }
 
 TEST(HoleClosing, MirrorsOnlyHalves) {
   TriangleMesh whole = cube_mesh();
   const Expected<RepairStep> both_sides = add_mirror_image(whole, Axis::kX, "cube.stl");
   ASSERT_FALSE(both_sides);
-  EXPECT_NE(both_sides.error().message().find("x from -0.5 to 0.5"), std::string::npos);
+  EXPECT_TRUE(contains(both_sides.error().message(), "x from -0.5 to 0.5"));
   TriangleMesh far = cube_mesh(1.0, {5.0, 0.0, 0.0});
   EXPECT_FALSE(add_mirror_image(far, Axis::kX, "cube.stl"));
   // A wall in the plane of symmetry bounds nothing in the whole body.

@@ -14,6 +14,7 @@
 
 #include "geometry/mesh_import.h"
 #include "tests/geometry/mesh_files.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 
@@ -48,11 +49,6 @@ inline void expect_mesh_or_complete_error(const std::filesystem::path& file, con
   for (const Triangle& triangle : result->mesh.triangles) {
     for (const std::int32_t i : triangle) ASSERT_TRUE(i >= 0 && i < vertices) << file;
   }
-}
-
-inline testing::AssertionResult contains(const std::string& text, const std::string& part) {
-  if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << "no '" << part << "' in: " << text;
 }
 
 inline std::size_t open_descriptors() {

@@ -15,6 +15,7 @@
 #include "geometry/mesh_validation.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/geometry/shared_mesh_files.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
@@ -272,8 +273,7 @@ TEST_F(MeshImport, ReportsNoAxesIfFormatHasNone) {
 
 TEST_F(MeshImport, ReportsErrorsLoggedByImporter) {
   const ImportedMesh found = imported(directory_.write("odd.obj", tetrahedron::obj() + "f\n"));
-  EXPECT_NE(found.source.note.find("the importer reported 1 error: "), std::string::npos)
-      << found.source.note;
+  EXPECT_TRUE(contains(found.source.note, "the importer reported 1 error: "));
   // Errors about materials are ignored.
   const ImportedMesh plain =
       imported(directory_.write("plain.obj", "mtllib none.mtl\n" + tetrahedron::obj()));

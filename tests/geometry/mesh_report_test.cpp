@@ -7,6 +7,7 @@
 
 #include "geometry/mesh_validation.h"
 #include "tests/geometry/sample_meshes.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
@@ -17,8 +18,7 @@ std::string text_of(const TriangleMesh& mesh, RepairPolicy repair = RepairPolicy
 }
 
 void expect_line(const std::string& text, const std::string& line) {
-  EXPECT_NE(("\n" + text + "\n").find("\n" + line + "\n"), std::string::npos) << text << "\nhas no line\n"
-                                                                              << line;
+  EXPECT_TRUE(contains(("\n" + text + "\n"), "\n" + line + "\n")) << text << "\nhas no line\n" << line;
 }
 
 TEST(MeshReport, FormatsAlignedLines) {
@@ -97,7 +97,7 @@ TEST(MeshReport, ClassifiesEveryComponent) {
   expect_line(text, "                12 triangles, -27 m^3, a cavity");
   expect_line(text, "                12 triangles, 8 m^3, was inside out: its winding was reversed");
   expect_line(text, "                12 triangles, 1 m^3, inside another: its volume counts twice");
-  EXPECT_EQ(text.find("the winding of all faces"), std::string::npos);
+  EXPECT_FALSE(contains(text, "the winding of all faces"));
 }
 
 TEST(MeshReport, ReportsTurnedMesh) {

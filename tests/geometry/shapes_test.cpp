@@ -14,6 +14,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "geometry/self_intersection.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
@@ -194,8 +195,8 @@ TEST(TorusKnotShape, MatchesVolumeByPappus) {
 TEST(TorusKnotShape, LimitsRadiusOfTube) {
   EXPECT_EQ(check_error(TorusKnotShape{}), "accepted");
   const std::string message = check_error(TorusKnotShape{1, 0.5});
-  EXPECT_NE(message.find("tube = 0.5"), std::string::npos) << message;
-  EXPECT_NE(message.find("at most 0.2"), std::string::npos) << message;
+  EXPECT_TRUE(contains(message, "tube = 0.5"));
+  EXPECT_TRUE(contains(message, "at most 0.2"));
 }
 
 TEST(WigleyShape, EnclosesHullAndFreeboard) {
@@ -323,7 +324,7 @@ TEST(CheckShape, RejectsInvalidArguments) {
   };
   for (const auto& [shape, actual] : invalid) {
     const std::string message = check_error(shape);
-    EXPECT_NE(message.find(actual), std::string::npos) << message << "\nexpected to contain: " << actual;
+    EXPECT_TRUE(contains(message, actual)) << "\nexpected to contain: " << actual;
   }
 }
 

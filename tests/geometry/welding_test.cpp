@@ -1,11 +1,14 @@
 #include "geometry/welding.h"
 
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "geometry/mass_properties.h"
 #include "geometry/mesh_topology.h"
 #include "tests/geometry/sample_meshes.h"
+#include "tests/hydrostatics/random_poses.h"
 
 namespace buoyancy {
 namespace {
@@ -97,6 +100,38 @@ TEST(Welding, ClosesCracksBelowTolerance) {
   EXPECT_LE(report.steps[0].max_move, 1e-6 * (1.0 + 1e-9));
   EXPECT_GT(report.volume_bound, 0.0);
   EXPECT_LE(report.volume_bound, 4 * 3.15 * 1.01e-6);
+}
+
+// Copies of a vertex in any direction from each other, in meshes of any size and place: merged up to the
+// tolerance, and not beyond.
+TEST(Welding, MergesVerticesUpToTheToleranceInEveryDirection) {
+  RandomPoses random(19);
+  for (int i = 0; i < 200; ++i) {
+    const double scale = std::array{1e-3, 1.0, 1e3}.at(random.pick(3));
+    const Vec3 corner = 0.1 * scale * random.direction();
+    TriangleMesh box = box_mesh(corner, corner + scale * Vec3(0.7, 1.1, 1.9));
+    const double tolerance = 1e-6 * bounding_box(box).diagonal();
+    const Vec3 crack = random.direction();
+    for (const double share : {0.999, 1.001}) {
+      TriangleMesh soup = unwelded(box);
+      for (std::size_t v = 0; v < soup.vertex_count(); ++v) {
+        if (random.pick(2) == 0) continue;
+        soup.x[v] += share * tolerance * crack.x();
+        soup.y[v] += share * tolerance * crack.y();
+        soup.z[v] += share * tolerance * crack.z();
+      }
+      soup = weld(soup).mesh;
+      RepairReport report;
+      weld_within_tolerance(soup, tolerance, report);
+      EXPECT_EQ(soup.vertex_count() == 8U, share < 1.0) << i << ": " << soup.vertex_count();
+      EXPECT_EQ(report.empty(), share > 1.0) << i;
+      // Faces that move along their normals sweep what the bound allows, up to terms of second order.
+      if (share < 1.0) {
+        const double moved = std::abs(mass_properties(soup).volume - mass_properties(box).volume);
+        EXPECT_LE(moved, report.volume_bound);
+      }
+    }
+  }
 }
 
 TEST(Welding, KeepsToleranceWeldThatLeavesAHole) {

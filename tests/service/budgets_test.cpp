@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 
 #include "tests/service/running_service.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
@@ -43,9 +44,7 @@ TEST(Budgets, AnswersOtherSessionsDuringALongRequest) {
   }
   service.child().send_signal(SIGTERM);
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0) << service.log();
-  EXPECT_NE(service.log().find("not answered, because they take several slices of time: 1 request"),
-            std::string::npos)
-      << service.log();
+  EXPECT_TRUE(contains(service.log(), "not answered, because they take several slices of time: 1 request"));
 }
 
 TEST(Budgets, AnswersEveryRequestOfASessionInOrder) {

@@ -7,6 +7,7 @@
 
 #include "tests/service/running_service.h"
 #include "tests/support/build_paths.h"
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 #include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
@@ -26,7 +27,7 @@ void expect_failure(const FinishedProcess& finished, int exit_code, const std::s
   const std::string& error = finished.standard_error;
   EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
   EXPECT_EQ(error.rfind("buoyancyd: ", 0), 0U) << error;
-  EXPECT_NE(error.find(text), std::string::npos) << error;
+  EXPECT_TRUE(contains(error, text));
 }
 
 class BuoyancydTermination : public testing::TestWithParam<int> {};
@@ -39,9 +40,8 @@ TEST_P(BuoyancydTermination, LogsTotalsAndExitsWithSuccess) {
   service.child().send_signal(GetParam());
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
   const std::string log = service.log();
-  EXPECT_NE(log.find(GetParam() == SIGINT ? "received SIGINT" : "received SIGTERM"), std::string::npos)
-      << log;
-  EXPECT_NE(log.find("1 requests: 1 computed"), std::string::npos) << log;
+  EXPECT_TRUE(contains(log, GetParam() == SIGINT ? "received SIGINT" : "received SIGTERM"));
+  EXPECT_TRUE(contains(log, "1 requests: 1 computed"));
   EXPECT_EQ(service.child().standard_output(), "");
 }
 
@@ -53,7 +53,7 @@ TEST(Buoyancyd, LogsItsConfigurationWhenReady) {
   for (const char* text :
        {"ready: 2 bodies", "BUOYANCY_STATES", "BUOYANCY_WRENCHES", "BUOYANCY_HYDROSTATICS", "BUOYANCY_LOADS",
         "BUOYANCY_STATUS", "udpm://239.255.76.67:7667?ttl=0", "mode latest"}) {
-    EXPECT_NE(log.find(text), std::string::npos) << text << " is missing from " << log;
+    EXPECT_TRUE(contains(log, text));
   }
 }
 
@@ -136,7 +136,7 @@ TEST(Buoyancyd, WarnsAboutAnotherInstanceOnItsChannels) {
   RunningService first;
   RawLcmSocket bus;
   for (int received = 0; received < 3; ++received) ASSERT_TRUE(bus.receive("BUOYANCY_STATUS", kWaitTimeout));
-  EXPECT_EQ(first.log().find("another buoyancyd"), std::string::npos) << first.log();  // its own status
+  EXPECT_FALSE(contains(first.log(), "another buoyancyd"));  // its own status
   RunningService second;
   EXPECT_TRUE(first.child().wait_for_text("another buoyancyd", kWaitTimeout)) << first.log();
   EXPECT_TRUE(second.child().wait_for_text("another buoyancyd", kWaitTimeout)) << second.log();
@@ -259,7 +259,7 @@ TEST(Buoyancyd, ChecksSceneWithoutNetwork) {
   const FinishedProcess text = run({"--scene", scene, "--check"});
   EXPECT_EQ(text.exit_code, 0);
   EXPECT_EQ(text.standard_error, "");
-  EXPECT_NE(text.standard_output.find("volume"), std::string::npos) << text.standard_output;
+  EXPECT_TRUE(contains(text.standard_output, "volume"));
   const FinishedProcess json = run({"--scene", scene, "--check", "--json"});
   EXPECT_EQ(json.exit_code, 0);
   EXPECT_TRUE(parse_json(json.standard_output).is_object());

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/service/running_service.h"
+#include "tests/support/contains.h"
 #include "tests/support/damaged_boxes.h"
 #include "tests/support/timeouts.h"
 
@@ -79,7 +80,7 @@ TEST(ServiceWithConditions, ReportsAChangeThatCannotBeUsed) {
   ASSERT_TRUE(wait_for_status(socket, [](const ServiceStatus&) { return true; }));
   for (const char* part : {"conditions rejected: 1", "liquid_volume = 1000", "body 1 (hull), ballast",
                            "from 0 to the tank's volume, 1 m^3", "bodies with status BAD_CONDITION: "}) {
-    EXPECT_NE(service.log().find(part), std::string::npos) << part << " in " << service.log();
+    EXPECT_TRUE(contains(service.log(), part));
   }
 }
 

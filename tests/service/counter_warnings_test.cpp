@@ -1,5 +1,9 @@
 #include "service/daemon/counter_warnings.h"
 
+#include <functional>
+#include <utility>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,46 +29,76 @@ TEST(CounterWarnings, AreEmptyIfNothingWentWrong) {
   EXPECT_TRUE(warnings_since({}, now).empty());
 }
 
-TEST(CounterWarnings, NameCausesOfRejectionAndBodyStatuses) {
-  ServiceCounters before;
-  before.rejected_count = 3;
-  ServiceCounters now = before;
-  now.rejected_count = 5;
-  count(now, BodyStatus::kUnknownBody) = 4;
-  const std::vector<LogEvent> warnings = warnings_since(before, now);
-  ASSERT_EQ(warnings.size(), 2U);
-  EXPECT_EQ(warnings[0].message, "messages rejected, count out of range");
-  EXPECT_EQ(warnings[0].count, 2);
-  EXPECT_EQ(warnings[1].message, "bodies with status UNKNOWN_BODY");
-  EXPECT_EQ(warnings[1].count, 4);
-  EXPECT_EQ(warnings[1].detail, "");
+// One event for each counter that grows, by how much it grew, and what to do where the name does not say it.
+TEST(CounterWarnings, NameEveryCounterThatGrows) {
+  struct Case {
+    std::function<std::int64_t&(ServiceCounters&)> counter;
+    const char* message;
+    const char* detail;
+  };
+  const auto field = [](std::int64_t ServiceCounters::*counter) {
+    return [counter](ServiceCounters& counters) -> std::int64_t& { return counters.*counter; };
+  };
+  const auto bodies = [](BodyStatus status) {
+    return [status](ServiceCounters& counters) -> std::int64_t& { return count(counters, status); };
+  };
+  const std::vector<Case> cases{
+      {field(&ServiceCounters::rejected_truncated), "messages rejected, shorter than the fixed fields", ""},
+      {field(&ServiceCounters::rejected_fingerprint), "messages rejected, fingerprint of another type", ""},
+      {field(&ServiceCounters::rejected_count), "messages rejected, count out of range", ""},
+      {field(&ServiceCounters::rejected_length), "messages rejected, ", ""},
+      {bodies(BodyStatus::kUnknownBody), "bodies with status UNKNOWN_BODY", ""},
+      {bodies(BodyStatus::kNonFinitePose), "bodies with status NON_FINITE_POSE", ""},
+      {bodies(BodyStatus::kNoSea), "bodies with status NO_SEA", "start what publishes it before the clients"},
+      {bodies(BodyStatus::kBadCondition), "bodies with status BAD_CONDITION",
+       "see the warning about its message"},
+      {bodies(BodyStatus::kNonFiniteTwist), "bodies with status NON_FINITE_TWIST",
+       "bodies with drag or added mass"},
+      {bodies(BodyStatus::kNotCertified), "bodies with status NOT_CERTIFIED",
+       "a trough uncovers the sea bed"},
+      {field(&ServiceCounters::seas_rejected), "seas rejected", "up, gravity or the current"},
+      {field(&ServiceCounters::bodies_work_capped),
+       "bodies in waves with an error bound above their tolerance", "Raise the tolerance"},
+      {field(&ServiceCounters::bodies_sea_too_steep), "bodies in a sea too steep for linear theory",
+       "buoyancyd --check reports the steepness"},
+      {field(&ServiceCounters::bodies_below_bed), "bodies that reach below the sea bed", "a body that sinks"},
+      {field(&ServiceCounters::rejected_bodies), "requests rejected, more than 10000 bodies more", "repeats"},
+      {field(&ServiceCounters::rejected_work), "requests rejected, computed for more than", "distribute"},
+      {field(&ServiceCounters::rejected_busy), "requests rejected, ", "too many clients"},
+      {field(&ServiceCounters::rejected_memory), "messages rejected, out of memory", "more memory"},
+      {field(&ServiceCounters::outputs_too_large), "hydrostatics or loads of more than", "was sent"},
+      {field(&ServiceCounters::replies_evicted), "stored replies discarded", "computed again"}};
+  for (const auto& [counter, message, detail] : cases) {
+    ServiceCounters before;
+    counter(before) = 3;
+    ServiceCounters now = before;
+    EXPECT_TRUE(warnings_since(before, now).empty()) << message;
+    counter(now) += 4;
+    const std::vector<LogEvent> warnings = warnings_since(before, now);
+    ASSERT_EQ(warnings.size(), 1U) << message;
+    EXPECT_THAT(warnings[0].message, HasSubstr(message));
+    EXPECT_EQ(warnings[0].count, 4) << message;
+    EXPECT_THAT(warnings[0].detail, HasSubstr(detail));
+    EXPECT_EQ(warnings[0].detail.empty(), *detail == '\0') << message;
+  }
 }
 
-TEST(CounterWarnings, SayWhatToDoWithoutSea) {
-  ServiceCounters now;
-  count(now, BodyStatus::kNoSea) = 2;
-  const std::vector<LogEvent> warnings = warnings_since({}, now);
-  ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_EQ(warnings[0].message, "bodies with status NO_SEA");
-  EXPECT_THAT(warnings[0].detail, HasSubstr("start what publishes it before the clients"));
-}
-
-TEST(CounterWarnings, PointToTheMessageOfAnUnusableCondition) {
-  ServiceCounters now;
-  now.conditions_rejected = 1;
-  count(now, BodyStatus::kBadCondition) = 2;
-  const std::vector<LogEvent> warnings = warnings_since({}, now);
-  ASSERT_EQ(warnings.size(), 1U) << "the message has a warning of its own";
-  EXPECT_EQ(warnings[0].message, "bodies with status BAD_CONDITION");
-  EXPECT_THAT(warnings[0].detail, HasSubstr("see the warning about its message"));
-}
-
-TEST(CounterWarnings, SayWhereTwistsAreNeeded) {
-  ServiceCounters now;
-  count(now, BodyStatus::kNonFiniteTwist) = 3;
-  const std::vector<LogEvent> warnings = warnings_since({}, now);
-  ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_THAT(warnings[0].detail, HasSubstr("bodies with drag or added mass"));
+TEST(CounterWarnings, NameEveryLossThatGrows) {
+  for (const auto& [counter, message] :
+       {std::pair{&DropCounts::packets, "packets dropped by the kernel"},
+        {&DropCounts::oversized_messages, "dropped"},
+        {&DropCounts::partial_messages_evicted, "incomplete messages discarded"},
+        {&DropCounts::fragments, "fragments of incomplete or contradictory messages dropped"}}) {
+    DropCounts before;
+    before.*counter = 3;
+    DropCounts now = before;
+    EXPECT_TRUE(warnings_since(before, now, {}).empty());
+    now.*counter = 7;
+    const std::vector<LogEvent> warnings = warnings_since(before, now, {});
+    ASSERT_EQ(warnings.size(), 1U) << message;
+    EXPECT_THAT(warnings[0].message, HasSubstr(message));
+    EXPECT_EQ(warnings[0].count, 4);
+  }
 }
 
 TEST(CounterWarnings, NamePosesWithoutTheVelocitiesThatDragNeeds) {
@@ -76,25 +110,6 @@ TEST(CounterWarnings, NamePosesWithoutTheVelocitiesThatDragNeeds) {
   EXPECT_THAT(warning->detail, HasSubstr("Send pose_t instead of rigid_transform_t"));
   EXPECT_FALSE(missing_velocities(pose, scene_of(kOneBoxScene), 7));
   EXPECT_FALSE(missing_velocities({"FRAME", 2, ""}, scene_of(kLoadsBoxScene), 7)) << "no such body any more";
-}
-
-TEST(CounterWarnings, SayWhatToDoAboutWaves) {
-  ServiceCounters now;
-  now.seas_rejected = 1;
-  now.bodies_work_capped = 20;
-  now.bodies_sea_too_steep = 300;
-  const std::vector<LogEvent> warnings = warnings_since({}, now);
-  ASSERT_EQ(warnings.size(), 3U);
-  EXPECT_EQ(warnings[0].message, "seas rejected");
-  EXPECT_EQ(warnings[0].count, 1);
-  EXPECT_THAT(warnings[0].detail, HasSubstr("up, gravity or the current"));
-  EXPECT_EQ(warnings[1].message, "bodies in waves with an error bound above their tolerance");
-  EXPECT_EQ(warnings[1].count, 20);
-  EXPECT_THAT(warnings[1].detail, HasSubstr("Raise the tolerance"));
-  EXPECT_EQ(warnings[2].message, "bodies in a sea too steep for linear theory");
-  EXPECT_EQ(warnings[2].count, 300);
-  EXPECT_THAT(warnings[2].detail, HasSubstr("buoyancyd --check reports the steepness"));
-  EXPECT_TRUE(warnings_since(now, now).empty());
 }
 
 TEST(CounterWarnings, DescribeInjectedFaultsByKind) {

@@ -8,6 +8,7 @@
 
 #include "engine/pose_request_adapter.h"
 #include "messages/wire.h"
+#include "tests/service/is_binomial.h"
 
 namespace buoyancy::service {
 namespace {
@@ -15,15 +16,6 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr std::uint64_t kDraws = 10'000;
-
-// Is `count` of n draws what a binomial distribution allows? Five standard deviations are exceeded once in
-// 1.7 million times.
-testing::AssertionResult is_binomial(std::int64_t count, double n, double probability) {
-  const double bound = 5.0 * std::sqrt(n * probability * (1.0 - probability)) + 0.5;
-  if (std::abs(static_cast<double>(count) - n * probability) <= bound) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << count << " of " << n << ", expected " << n * probability << " +- "
-                                     << bound;
-}
 
 template <typename Predicate>
 std::int64_t count_fates(const FaultOptions& options, Predicate&& predicate) {

@@ -10,7 +10,9 @@
 
 #include "service/daemon/fault_injection.h"
 #include "service/daemon/faulty_sender.h"
+#include "tests/service/is_binomial.h"
 #include "tests/service/running_service.h"
+#include "tests/support/contains.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy::service {
@@ -23,14 +25,6 @@ constexpr int kSessions = 2 * kWindow;
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-// Is `count` of n draws what a binomial distribution allows, within five standard deviations?
-testing::AssertionResult is_binomial(std::int64_t count, std::int64_t n, double probability) {
-  const double mean = static_cast<double>(n) * probability;
-  const double bound = 5.0 * std::sqrt(mean * (1.0 - probability)) + 0.5;
-  if (std::abs(static_cast<double>(count) - mean) <= bound) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << count << " of " << n << ", expected " << mean << " +- " << bound;
 }
 
 // What a client receives on the channel of the responses.
@@ -268,7 +262,7 @@ TEST(InjectedFaults, AreAnnouncedInLogAndStatus) {
       log.find("[warning] injecting faults on purpose: drop=1,delay=1.5ms,seed=9; responses are lost");
   ASSERT_NE(warning, std::string::npos) << log;
   EXPECT_LT(warning, log.find("ready:")) << log;
-  EXPECT_NE(log.find("never use it in production"), std::string::npos) << log;
+  EXPECT_TRUE(contains(log, "never use it in production"));
   RawLcmSocket socket;
   for (int i = 0; i < 3; ++i) send_request(socket, one_body(1, i, 0.0));
   const auto status =
@@ -277,11 +271,9 @@ TEST(InjectedFaults, AreAnnouncedInLogAndStatus) {
   EXPECT_EQ(status->injected_faults, "drop=1,delay=1.5ms,seed=9");
   service.child().send_signal(SIGTERM);
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
-  EXPECT_NE(
-      service.log().find("[warning] injected faults (drop=1,delay=1.5ms,seed=9): 3 responses dropped, 0 "
-                         "delayed"),
-      std::string::npos)
-      << service.log();
+  EXPECT_TRUE(contains(service.log(),
+                       "[warning] injected faults (drop=1,delay=1.5ms,seed=9): 3 responses dropped, 0 "
+                       "delayed"));
 }
 
 TEST(InjectedFaults, AreAbsentUnlessRequested) {
@@ -295,7 +287,7 @@ TEST(InjectedFaults, AreAbsentUnlessRequested) {
   EXPECT_EQ(faults.dropped + faults.delayed + faults.duplicated + faults.reordered + faults.corrupted +
                 faults.stalls,
             0);
-  EXPECT_EQ(service.log().find("inject"), std::string::npos) << service.log();
+  EXPECT_FALSE(contains(service.log(), "inject"));
 }
 
 TEST(InjectedFaults, SendWhatIsDelayedWhenTheServiceEnds) {

@@ -8,6 +8,7 @@
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/service/running_service.h"
+#include "tests/support/contains.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
@@ -111,7 +112,7 @@ TEST_P(LivePoses, GetDragOnlyWithVelocities) {
       "velocities",
       kWaitTimeout))
       << service.log();
-  EXPECT_EQ(service.log().find("on HULL, whose body"), std::string::npos) << service.log();
+  EXPECT_FALSE(contains(service.log(), "on HULL, whose body"));
 }
 
 TEST_P(LivePoses, LackVelocitiesAfterAReloadThatAddsDrag) {
@@ -125,7 +126,7 @@ TEST_P(LivePoses, LackVelocitiesAfterAReloadThatAddsDrag) {
   service.write("scene.toml", kLoadsBoxScene);
   service.child().send_signal(SIGHUP);
   ASSERT_TRUE(service.child().wait_for_text("reloaded:", kWaitTimeout)) << service.log();
-  EXPECT_EQ(service.log().find("poses without velocities"), std::string::npos) << "not needed until then";
+  EXPECT_FALSE(contains(service.log(), "poses without velocities")) << "not needed until then";
   socket.send("HULL", pose_at(0.5, 2));
   EXPECT_EQ(receive(socket).bodies.at(0).status, 4) << "their frame is unknown";
   EXPECT_TRUE(service.child().wait_for_text("--velocity-frame", kWaitTimeout)) << service.log();

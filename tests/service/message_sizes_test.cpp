@@ -7,6 +7,7 @@
 #include "messages/wire.h"
 #include "service/daemon/daemon.h"
 #include "tests/engine/box_scene.h"
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 
 namespace buoyancy::service {
@@ -102,7 +103,7 @@ TEST(MessageSizes, AppearInCheckReport) {
                            "response for all 1000 bodies: 104036 bytes in 2 packets",
                            "hydrostatics for all 1000 bodies: 512036 bytes in 8 packets", "100000 bytes",
                            "warning: request for all 1000 bodies: "}) {
-    EXPECT_NE(text.find(part), std::string::npos) << part << " is missing from " << text.substr(0, 2'000);
+    EXPECT_TRUE(contains(text, part));
   }
   const auto json = parse_json(check_report_json(scene, messages, small));
   EXPECT_EQ(json["messages"]["request"]["bytes"], 108'044);
@@ -120,7 +121,7 @@ TEST(MessageSizes, OfLoadsAppearInCheckReport) {
   const Scene scene = boxes(1'000, kLoads);
   const LargestMessages messages = largest_messages(scene, {});
   const std::string text = check_report_text(scene, messages, std::nullopt);
-  EXPECT_NE(text.find("loads for all 1000 bodies: 760036 bytes in 12 packets"), std::string::npos);
+  EXPECT_TRUE(contains(text, "loads for all 1000 bodies: 760036 bytes in 12 packets"));
   const auto json = parse_json(check_report_json(scene, messages, std::nullopt));
   EXPECT_EQ(json["messages"]["loads"]["bytes"], 760'036);
   EXPECT_EQ(json["messages"]["loads"]["packets"], 12);
@@ -131,7 +132,7 @@ TEST(CheckReport, WarnsAboutASteepSea) {
   const Scene scene = boxes(1, "[water.waves]\ntype = \"regular\"\nheight = 3\nperiod = 2\n");
   const LargestMessages messages = largest_messages(scene, {});
   const std::string text = check_report_text(scene, messages, std::nullopt);
-  EXPECT_NE(text.find("\nwarning: test scene: the sea: a steepness of 1.5"), std::string::npos) << text;
+  EXPECT_TRUE(contains(text, "\nwarning: test scene: the sea: a steepness of 1.5"));
   const auto json = parse_json(check_report_json(scene, messages, std::nullopt));
   ASSERT_EQ(json["warnings"].size(), 2U);  // such a wave also breaks
   EXPECT_EQ(json["sea"]["components"].size(), 1U);

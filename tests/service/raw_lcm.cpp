@@ -32,25 +32,104 @@ sockaddr_in address(const char* host) {
   return result;
 }
 
+// The fields of the messages in their order, as lcmtypes/*.lcm define them.
+template <typename Visit>
+void visit_fields(RawState& state, Visit& visit) {
+  visit("body_id", state.body_id);
+  visit("position", state.position);
+  visit("quaternion_wxyz", state.quaternion_wxyz);
+  visit("linear_velocity", state.linear_velocity);
+  visit("angular_velocity", state.angular_velocity);
+}
+
+template <typename Visit>
+void visit_fields(RawWrench& wrench, Visit& visit) {
+  visit("body_id", wrench.body_id);
+  visit("status", wrench.status);
+  visit("force", wrench.force);
+  visit("torque", wrench.torque);
+  visit("submerged_volume", wrench.submerged_volume);
+  visit("center_of_buoyancy", wrench.center_of_buoyancy);
+  visit("force_error_bound", wrench.force_error_bound);
+  visit("torque_error_bound", wrench.torque_error_bound);
+}
+
+template <typename Visit>
+void visit_fields(RawBodyHydrostatics& body, Visit& visit) {
+  visit("body_id", body.body_id);
+  visit("status", body.status);
+  visit("submerged_volume", body.submerged_volume);
+  visit("center_of_buoyancy", body.center_of_buoyancy);
+  visit("wetted_area", body.wetted_area);
+  visit("waterplane_area", body.waterplane_area);
+  visit("waterplane_centroid", body.waterplane_centroid);
+  visit("waterplane_second_moments", body.waterplane_second_moments);
+  visit("waterplane_axes", body.waterplane_axes);
+  visit("metacentric_radii", body.metacentric_radii);
+  visit("metacenters", body.metacenters);
+  visit("metacentric_heights", body.metacentric_heights);
+  visit("stiffness", body.stiffness);
+}
+
+template <typename Visit>
+void visit_fields(RawBodyLoads& body, Visit& visit) {
+  visit("body_id", body.body_id);
+  visit("status", body.status);
+  visit("immersion", body.immersion);
+  visit("buoyancy_force", body.buoyancy_force);
+  visit("buoyancy_torque", body.buoyancy_torque);
+  visit("drag_force", body.drag_force);
+  visit("drag_torque", body.drag_torque);
+  visit("added_mass_force", body.added_mass_force);
+  visit("added_mass_torque", body.added_mass_torque);
+  visit("added_mass", body.added_mass);
+  visit("damping", body.damping);
+  visit("water_velocity", body.water_velocity);
+}
+
+template <typename Body, typename Visit>
+void visit_fields(RawResponse<Body>& response, Visit& visit) {
+  visit("utime", response.utime);
+  visit("session_id", response.session_id);
+  visit("seq", response.seq);
+  visit("num_bodies", response.num_bodies);
+  visit("bodies", response.bodies);
+}
+
+template <typename Visit>
+void visit_fields(RawStates& states, Visit& visit) {
+  visit("utime", states.utime);
+  visit("session_id", states.session_id);
+  visit("seq", states.seq);
+  visit("lead_time", states.lead_time);
+  std::int32_t num_bodies = 0;
+  visit("num_bodies", num_bodies);
+  visit("bodies", states.bodies);
+}
+
 // LCM's type fingerprint: a hash of the names, primitive types and dimensions of the fields.
 class Fingerprint {
  public:
-  Fingerprint& field(const std::string& name, const std::string& primitive_type) {
-    return text(name).text(primitive_type).byte(0);
+  void operator()(const std::string& name, std::int32_t& /*field*/) { text(name).text("int32_t").byte(0); }
+  void operator()(const std::string& name, std::int64_t& /*field*/) { text(name).text("int64_t").byte(0); }
+  void operator()(const std::string& name, double& /*field*/) { text(name).text("double").byte(0); }
+  template <std::size_t kSize>
+  void operator()(const std::string& name, std::array<double, kSize>& /*field*/) {
+    text(name).text("double").byte(1).byte(0).text(std::to_string(kSize));
   }
-  Fingerprint& fixed_array(const std::string& name, const std::string& primitive_type,
-                           const std::string& size) {
-    return text(name).text(primitive_type).byte(1).byte(0).text(size);
-  }
-  Fingerprint& matrix(const std::string& name, const std::string& primitive_type, const std::string& rows,
-                      const std::string& columns) {
-    return text(name).text(primitive_type).byte(2).byte(0).text(rows).byte(0).text(columns);
+  template <std::size_t kRows, std::size_t kColumns>
+  void operator()(const std::string& name, std::array<std::array<double, kColumns>, kRows>& /*field*/) {
+    text(name).text("double").byte(2);
+    byte(0).text(std::to_string(kRows)).byte(0).text(std::to_string(kColumns));
   }
   // value() adds the fingerprint of the elements; the name of their type is not hashed.
-  Fingerprint& counted_array_of_structs(const std::string& name, const std::string& count,
-                                        std::int64_t element) {
-    nested_ += static_cast<std::uint64_t>(element);
-    return text(name).byte(1).byte(1).text(count);
+  template <typename Body>
+  void operator()(const std::string& name, std::vector<Body>& /*field*/) {
+    Fingerprint of_element;
+    Body element;
+    visit_fields(element, of_element);
+    nested_ += static_cast<std::uint64_t>(of_element.value());
+    text(name).byte(1).byte(1).text("num_bodies");
   }
   std::int64_t value() const {
     const std::uint64_t sum = hash_ + nested_;
@@ -73,86 +152,41 @@ class Fingerprint {
   std::uint64_t nested_ = 0;
 };
 
-std::int64_t state_fingerprint() {
-  return Fingerprint()
-      .field("body_id", "int32_t")
-      .fixed_array("position", "double", "3")
-      .fixed_array("quaternion_wxyz", "double", "4")
-      .fixed_array("linear_velocity", "double", "3")
-      .fixed_array("angular_velocity", "double", "3")
-      .value();
+template <typename Message>
+std::int64_t fingerprint_of() {
+  Message message;
+  Fingerprint fingerprint;
+  visit_fields(message, fingerprint);
+  return fingerprint.value();
 }
 
-std::int64_t response_fingerprint(std::int64_t body) {
-  return Fingerprint()
-      .field("utime", "int64_t")
-      .field("session_id", "int64_t")
-      .field("seq", "int64_t")
-      .field("num_bodies", "int32_t")
-      .counted_array_of_structs("bodies", "num_bodies", body)
-      .value();
-}
+// Reads the fields of a message, or of one of its bodies.
+struct FieldReader {
+  void operator()(const char* /*name*/, std::int32_t& field) { field = reader.int32(); }
+  void operator()(const char* /*name*/, std::int64_t& field) { field = reader.int64(); }
+  void operator()(const char* /*name*/, double& field) { field = reader.real(); }
+  template <typename Value, std::size_t kSize>
+  void operator()(const char* name, std::array<Value, kSize>& field) {
+    for (Value& one : field) (*this)(name, one);
+  }
+  template <typename Body>
+  void operator()(const char* /*name*/, std::vector<Body>& bodies) {
+    bodies.resize(static_cast<std::size_t>(num_bodies));
+    for (Body& body : bodies) visit_fields(body, *this);
+  }
+  RawReader& reader;
+  std::int32_t& num_bodies;
+};
 
-std::int64_t wrenches_fingerprint() {
-  const std::int64_t wrench = Fingerprint()
-                                  .field("body_id", "int32_t")
-                                  .field("status", "int32_t")
-                                  .fixed_array("force", "double", "3")
-                                  .fixed_array("torque", "double", "3")
-                                  .field("submerged_volume", "double")
-                                  .fixed_array("center_of_buoyancy", "double", "3")
-                                  .field("force_error_bound", "double")
-                                  .field("torque_error_bound", "double")
-                                  .value();
-  return response_fingerprint(wrench);
-}
-
-std::int64_t hydrostatics_fingerprint() {
-  const std::int64_t body = Fingerprint()
-                                .field("body_id", "int32_t")
-                                .field("status", "int32_t")
-                                .field("submerged_volume", "double")
-                                .fixed_array("center_of_buoyancy", "double", "3")
-                                .field("wetted_area", "double")
-                                .field("waterplane_area", "double")
-                                .fixed_array("waterplane_centroid", "double", "3")
-                                .fixed_array("waterplane_second_moments", "double", "2")
-                                .matrix("waterplane_axes", "double", "2", "3")
-                                .fixed_array("metacentric_radii", "double", "2")
-                                .matrix("metacenters", "double", "2", "3")
-                                .fixed_array("metacentric_heights", "double", "2")
-                                .matrix("stiffness", "double", "6", "6")
-                                .value();
-  return response_fingerprint(body);
-}
-
-std::int64_t loads_fingerprint() {
-  const std::int64_t body = Fingerprint()
-                                .field("body_id", "int32_t")
-                                .field("status", "int32_t")
-                                .field("immersion", "double")
-                                .fixed_array("buoyancy_force", "double", "3")
-                                .fixed_array("buoyancy_torque", "double", "3")
-                                .fixed_array("drag_force", "double", "3")
-                                .fixed_array("drag_torque", "double", "3")
-                                .fixed_array("added_mass_force", "double", "3")
-                                .fixed_array("added_mass_torque", "double", "3")
-                                .matrix("added_mass", "double", "6", "6")
-                                .matrix("damping", "double", "6", "6")
-                                .fixed_array("water_velocity", "double", "3")
-                                .value();
-  return response_fingerprint(body);
-}
-
-// Reads the header that all responses share and allocates the bodies.
+// Throws if bytes are not such a message.
 template <typename Response>
-Response read_header(RawReader& reader, std::int64_t fingerprint) {
-  if (reader.int64() != fingerprint) throw std::runtime_error("wrong message type");
+Response decode_response(const RawBytes& bytes) {
+  RawReader reader(bytes);
+  if (reader.int64() != fingerprint_of<Response>()) throw std::runtime_error("wrong message type");
   Response response;
-  response.utime = reader.int64();
-  response.session_id = reader.int64();
-  response.seq = reader.int64();
-  response.bodies.resize(static_cast<std::size_t>(reader.int32()));
+  FieldReader fields{reader, response.num_bodies};
+  visit_fields(response, fields);
+  if (reader.left() != 0) throw std::runtime_error("trailing bytes after the message");
   return response;
 }
 
@@ -306,14 +340,7 @@ std::uint64_t RawReader::unsigned_number(std::size_t size) {
 }
 
 std::int64_t raw_states_fingerprint() {
-  return Fingerprint()
-      .field("utime", "int64_t")
-      .field("session_id", "int64_t")
-      .field("seq", "int64_t")
-      .field("lead_time", "double")
-      .field("num_bodies", "int32_t")
-      .counted_array_of_structs("bodies", "num_bodies", state_fingerprint())
-      .value();
+  return fingerprint_of<RawStates>();
 }
 
 RawBytes encode_states(const RawStates& states) {
@@ -328,61 +355,15 @@ RawBytes encode_states(const RawStates& states) {
 }
 
 RawWrenches decode_wrenches(const RawBytes& bytes) {
-  RawReader reader(bytes);
-  auto wrenches = read_header<RawWrenches>(reader, wrenches_fingerprint());
-  for (RawWrench& wrench : wrenches.bodies) {
-    wrench.body_id = reader.int32();
-    wrench.status = reader.int32();
-    wrench.force = reader.real3();
-    wrench.torque = reader.real3();
-    wrench.submerged_volume = reader.real();
-    wrench.center_of_buoyancy = reader.real3();
-    wrench.force_error_bound = reader.real();
-    wrench.torque_error_bound = reader.real();
-  }
-  if (reader.left() != 0) throw std::runtime_error("trailing bytes after the message");
-  return wrenches;
+  return decode_response<RawWrenches>(bytes);
 }
 
 RawHydrostatics decode_hydrostatics(const RawBytes& bytes) {
-  RawReader reader(bytes);
-  auto hydrostatics = read_header<RawHydrostatics>(reader, hydrostatics_fingerprint());
-  for (RawBodyHydrostatics& body : hydrostatics.bodies) {
-    body.body_id = reader.int32();
-    body.status = reader.int32();
-    body.submerged_volume = reader.real();
-    reader.reals(body.center_of_buoyancy);
-    body.wetted_area = reader.real();
-    body.waterplane_area = reader.real();
-    reader.reals(body.waterplane_centroid);
-    reader.reals(body.waterplane_second_moments);
-    reader.reals(body.waterplane_axes);
-    reader.reals(body.metacentric_radii);
-    reader.reals(body.metacenters);
-    reader.reals(body.metacentric_heights);
-    reader.reals(body.stiffness);
-  }
-  if (reader.left() != 0) throw std::runtime_error("trailing bytes after the message");
-  return hydrostatics;
+  return decode_response<RawHydrostatics>(bytes);
 }
 
 RawLoads decode_loads(const RawBytes& bytes) {
-  RawReader reader(bytes);
-  auto loads = read_header<RawLoads>(reader, loads_fingerprint());
-  for (RawBodyLoads& body : loads.bodies) {
-    body.body_id = reader.int32();
-    body.status = reader.int32();
-    body.immersion = reader.real();
-    for (auto* vector : {&body.buoyancy_force, &body.buoyancy_torque, &body.drag_force, &body.drag_torque,
-                         &body.added_mass_force, &body.added_mass_torque}) {
-      reader.reals(*vector);
-    }
-    reader.reals(body.added_mass);
-    reader.reals(body.damping);
-    reader.reals(body.water_velocity);
-  }
-  if (reader.left() != 0) throw std::runtime_error("trailing bytes after the message");
-  return loads;
+  return decode_response<RawLoads>(bytes);
 }
 
 }  // namespace buoyancy

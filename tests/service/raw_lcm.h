@@ -75,19 +75,6 @@ class RawReader {
   std::int32_t int32() { return static_cast<std::int32_t>(unsigned_number(4)); }
   std::int64_t int64() { return static_cast<std::int64_t>(unsigned_number(8)); }
   double real();
-  std::array<double, 3> real3() {
-    std::array<double, 3> values{};
-    for (double& value : values) value = real();
-    return values;
-  }
-  template <std::size_t kSize>
-  void reals(std::array<double, kSize>& values) {
-    for (double& value : values) value = real();
-  }
-  template <std::size_t kRows, std::size_t kColumns>
-  void reals(std::array<std::array<double, kColumns>, kRows>& rows) {
-    for (auto& row : rows) reals(row);
-  }
   std::size_t left() const { return bytes_.size() - position_; }
 
  private:
@@ -115,6 +102,16 @@ struct RawStates {
 std::int64_t raw_states_fingerprint();
 RawBytes encode_states(const RawStates& states);
 
+// What all responses have in common.
+template <typename Body>
+struct RawResponse {
+  std::int64_t utime = 0;
+  std::int64_t session_id = 0;
+  std::int64_t seq = 0;
+  std::int32_t num_bodies = 0;
+  std::vector<Body> bodies;
+};
+
 // body_wrenches_t.lcm
 struct RawWrench {
   std::int32_t body_id = 0;
@@ -126,12 +123,7 @@ struct RawWrench {
   double force_error_bound = 0.0;
   double torque_error_bound = 0.0;
 };
-struct RawWrenches {
-  std::int64_t utime = 0;
-  std::int64_t session_id = 0;
-  std::int64_t seq = 0;
-  std::vector<RawWrench> bodies;
-};
+using RawWrenches = RawResponse<RawWrench>;
 RawWrenches decode_wrenches(const RawBytes& bytes);  // throws if bytes are not such a message
 
 // body_hydrostatics_t.lcm
@@ -150,12 +142,7 @@ struct RawBodyHydrostatics {
   std::array<double, 2> metacentric_heights{};
   std::array<std::array<double, 6>, 6> stiffness{};
 };
-struct RawHydrostatics {
-  std::int64_t utime = 0;
-  std::int64_t session_id = 0;
-  std::int64_t seq = 0;
-  std::vector<RawBodyHydrostatics> bodies;
-};
+using RawHydrostatics = RawResponse<RawBodyHydrostatics>;
 RawHydrostatics decode_hydrostatics(const RawBytes& bytes);  // throws if bytes are not such a message
 
 // body_loads_t.lcm
@@ -173,12 +160,7 @@ struct RawBodyLoads {
   std::array<std::array<double, 6>, 6> damping{};
   std::array<double, 3> water_velocity{};
 };
-struct RawLoads {
-  std::int64_t utime = 0;
-  std::int64_t session_id = 0;
-  std::int64_t seq = 0;
-  std::vector<RawBodyLoads> bodies;
-};
+using RawLoads = RawResponse<RawBodyLoads>;
 RawLoads decode_loads(const RawBytes& bytes);  // throws if bytes are not such a message
 
 }  // namespace buoyancy

@@ -8,6 +8,7 @@
 #include "tests/geometry/mesh_files.h"
 #include "tests/service/leased_file.h"
 #include "tests/service/running_service.h"
+#include "tests/support/contains.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
@@ -96,7 +97,7 @@ TEST(Reload, KeepsOldSceneIfNewOneIsInvalid) {
   RawLcmSocket socket;
   EXPECT_NEAR(vertical_force(socket, 1), kForceBefore, 1e-6);
   reload(service, "[[body]]\nid = ", "reload failed");
-  EXPECT_NE(service.log().find("scene.toml:2"), std::string::npos) << service.log();
+  EXPECT_TRUE(contains(service.log(), "scene.toml:2"));
   EXPECT_NEAR(vertical_force(socket, 2), kForceBefore, 1e-6);
   std::string deep = "a";  // toml++ would overflow the stack
   for (int i = 0; i < 50'000; ++i) deep += ".a";
@@ -152,7 +153,7 @@ TEST(Reload, UsesOldSceneWhileLoadingAndQueuesOneReload) {
     EXPECT_NEAR(vertical_force(socket, seq++), kForceBefore, 1e-6);
   }
   ASSERT_TRUE(service.child().wait_for_text("in progress; queued", kWaitTimeout)) << service.log();
-  EXPECT_EQ(service.log().find("reloaded:"), std::string::npos) << service.log();
+  EXPECT_FALSE(contains(service.log(), "reloaded:"));
   // The service has looked at its signals, the third SIGHUP among them, when it answers once more.
   EXPECT_NEAR(vertical_force(socket, seq++), kForceBefore, 1e-6);
   mesh.release();
@@ -170,7 +171,7 @@ TEST(Reload, LetsServiceExitDuringLoad) {
   service.child().send_signal(SIGHUP);
   ASSERT_TRUE(service.child().wait_for_text("SIGHUP: reloading", kWaitTimeout)) << service.log();
   expect_clean_exit(service);
-  EXPECT_NE(service.log().find("received SIGTERM"), std::string::npos) << service.log();
+  EXPECT_TRUE(contains(service.log(), "received SIGTERM"));
 }
 
 TEST(Reload, ImportsMeshesWhileWorkerThreadsRun) {

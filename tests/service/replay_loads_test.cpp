@@ -12,6 +12,8 @@
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/service/replay_fixture.h"
+#include "tests/support/contains.h"
+#include "tests/support/csv.h"
 #include "tests/support/json.h"
 
 namespace buoyancy {
@@ -40,8 +42,7 @@ class ReplayLoads : public Replay {
     EXPECT_EQ(std::count(finished.standard_error.begin(), finished.standard_error.end(), '\n'), 1)
         << finished.standard_error;
     for (const std::string& text : texts) {
-      EXPECT_NE(finished.standard_error.find(text), std::string::npos)
-          << text << " in " << finished.standard_error;
+      EXPECT_TRUE(contains(finished.standard_error, text));
     }
     EXPECT_FALSE(std::filesystem::exists(path("refused.csv")));
   }
@@ -62,17 +63,6 @@ std::string moving_rows(int count) {
     csv << ",0.5,-0.25,0.1,0.2,-0.3\n" << i << ",2,0,0,0,1,0,0,0,nan,nan,nan,nan,nan,nan\n";
   }
   return csv.str();
-}
-
-std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
-  std::vector<std::vector<std::string>> rows;
-  std::istringstream lines(csv);
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream fields(line);
-    rows.emplace_back();
-    for (std::string field; std::getline(fields, field, ',');) rows.back().push_back(field);
-  }
-  return rows;
 }
 
 std::vector<double> numbers_of(const BodyLoads& body) {
@@ -111,7 +101,7 @@ TEST_F(ReplayLoads, WritesEventsAfterEachResponse) {
 TEST_F(ReplayLoads, CsvHasTheNumbersOfTheMessages) {
   const std::string input = write("in.csv", moving_rows(50));
   ASSERT_EQ(replay(input, path("out.lcmlog"), {"--loads", path("loads.csv")}).exit_code, 0);
-  const auto rows = rows_of(read_file(path("loads.csv")));
+  const auto rows = csv_rows(read_file(path("loads.csv")));
   const std::vector<BodiesLoads> messages = loads_in(path("out.lcmlog"));
   ASSERT_EQ(messages.size(), 50U);
   ASSERT_EQ(rows.size(), 51U) << "only body 1 requests its loads";
@@ -133,9 +123,7 @@ TEST_F(ReplayLoads, CsvHasTheNumbersOfTheMessages) {
     EXPECT_EQ(row[0], std::to_string(i));
     EXPECT_EQ(row[1], "1");
     EXPECT_EQ(row[2], i % 7 == 3 ? "4" : "0");
-    std::vector<double> read;
-    for (std::size_t column = 3; column < kColumns; ++column) read.push_back(std::stod(row[column]));
-    EXPECT_EQ(read, numbers_of(body)) << i;
+    EXPECT_EQ(buoyancy::numbers_of(CsvRow(row.begin() + 3, row.end())), numbers_of(body)) << i;
   }
   EXPECT_NE(messages[1].bodies[0].drag_force[0], 0.0);
   EXPECT_NE(messages[1].bodies[0].damping[0][4], 0.0);
@@ -178,10 +166,10 @@ TEST_F(ReplayLoads, CsvIsRefusedWhereItCannotBeWritten) {
                  {"--loads: together with --part", "Name an .lcmlog as OUTPUT"});
   const FinishedProcess joined = run({"--join", "2", "--loads", loads, input, path("refused.csv")});
   EXPECT_EQ(joined.exit_code, 2) << joined.standard_error;
-  EXPECT_NE(joined.standard_error.find("together with --loads"), std::string::npos) << joined.standard_error;
+  EXPECT_TRUE(contains(joined.standard_error, "together with --loads"));
   const FinishedProcess full = replay(input, path("out.csv"), {"--loads", "/dev/full"});
   EXPECT_EQ(full.exit_code, 1) << full.standard_error;
-  EXPECT_NE(full.standard_error.find("/dev/full"), std::string::npos) << full.standard_error;
+  EXPECT_TRUE(contains(full.standard_error, "/dev/full"));
   write("scene.toml", kOneBoxScene);
   expect_refused(input, {"--loads", loads},
                  {"no body of " + scene_ + " has loads", "outputs = [\"wrench\", \"loads\"]"});
@@ -215,7 +203,7 @@ TEST_F(ReplayLoads, PosesGetDragOnlyWithVelocities) {
       << finished.standard_error;
   for (const char* text : {"warning: channel FRAME: 3 poses in ", "body 'hull' has drag or added mass",
                            "NON_FINITE_TWIST", "Send pose_t instead of rigid_transform_t"}) {
-    EXPECT_NE(finished.standard_error.find(text), std::string::npos) << finished.standard_error;
+    EXPECT_TRUE(contains(finished.standard_error, text));
   }
   std::vector<BodyWrench> wrenches;
   for (const LoggedEvent& one : events_of(path("out.lcmlog"), only_channel("BUOYANCY_WRENCHES"))) {
@@ -284,9 +272,7 @@ TEST_F(ComparedLoads, AgreeWithThemselves) {
   EXPECT_EQ(same["bodies"][1]["loads"], 0);
   const FinishedProcess text =
       replay(path("in.csv"), path("new.lcmlog"), {"--compare", path("baseline.lcmlog")});
-  EXPECT_NE(text.standard_output.find("       1 loads: 17 compared, largest difference over tolerance 0\n"),
-            std::string::npos)
-      << text.standard_output;
+  EXPECT_TRUE(contains(text.standard_output, " 1 loads: 17 compared, largest difference over tolerance 0\n"));
 }
 
 TEST_F(ComparedLoads, NameTheFieldThatDiffers) {

@@ -14,6 +14,7 @@
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/service/replay_fixture.h"
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 
 namespace buoyancy {
@@ -110,8 +111,7 @@ class ReplayParts : public Replay {
     EXPECT_EQ(std::count(joined.standard_error.begin(), joined.standard_error.end(), '\n'), 1)
         << joined.standard_error;
     for (const std::string& text : texts) {
-      EXPECT_NE(joined.standard_error.find(text), std::string::npos)
-          << text << " in " << joined.standard_error;
+      EXPECT_TRUE(contains(joined.standard_error, text));
     }
     for (const char* output : {"out.csv", "out.lcmlog", "out.csv.tmp", "out.lcmlog.tmp"}) {
       EXPECT_FALSE(std::filesystem::exists(path(output))) << output;
@@ -313,7 +313,7 @@ TEST_F(ReplayParts, ReportInputErrorsOnlyWhenJoined) {
   const std::string input = write("in.csv", kPoseHeader + "1,1,zero,0,0,1,0,0,0\n");
   const FinishedProcess part = run_part(input, path("out.csv"), {1, 1});
   EXPECT_EQ(part.exit_code, 0) << "the part is complete";
-  EXPECT_NE(part.standard_error.find("line 2: 'zero'"), std::string::npos) << part.standard_error;
+  EXPECT_TRUE(contains(part.standard_error, "line 2: 'zero'"));
   const FinishedProcess joined = join(1, input, path("out.csv"));
   EXPECT_EQ(joined.exit_code, 1);
   EXPECT_EQ(joined.standard_error, part.standard_error);
@@ -328,8 +328,8 @@ TEST_F(ReplayParts, WarnOfUnseenChannelsOnlyWhenJoined) {
   const FinishedProcess part = run_part(input, path("out.lcmlog"), {1, 2}, options);
   EXPECT_EQ(part.standard_error, "");
   const FinishedProcess joined = join(2, input, path("out.lcmlog"));
-  EXPECT_NE(joined.standard_error.find("channel POZE"), std::string::npos) << joined.standard_error;
-  EXPECT_EQ(joined.standard_error.find("channel RARE"), std::string::npos) << joined.standard_error;
+  EXPECT_TRUE(contains(joined.standard_error, "channel POZE"));
+  EXPECT_FALSE(contains(joined.standard_error, "channel RARE"));
 }
 
 TEST_F(ReplayParts, FailOnRequestInSessionOfPoses) {
@@ -340,8 +340,7 @@ TEST_F(ReplayParts, FailOnRequestInSessionOfPoses) {
   const std::string input = write("in.lcmlog", event("BUOYANCY_STATES", 1, bytes));
   const FinishedProcess finished = run_part(input, path("out.lcmlog"), {1, 1}, {"--pose", "POSE=1"});
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("session_id of a pose channel"), std::string::npos)
-      << finished.standard_error;
+  EXPECT_TRUE(contains(finished.standard_error, "session_id of a pose channel"));
   EXPECT_FALSE(std::filesystem::exists(part_of("out.lcmlog", 1, 1)));
   EXPECT_EQ(run_part(input, path("out.csv"), {1, 1}, {"--pose", "POSE=1"}).exit_code, 0)
       << "rows have no seq";
@@ -566,9 +565,7 @@ TEST_F(InterruptedPart, LeavesNothingThatJoinAccepts) {
     expect_refusal(join(2, path("in.csv"), path("out.csv")),
                    {"part 2 of 2 not complete", "Run it again (--part 2/2)"});
     if (signal == SIGTERM) {
-      EXPECT_NE(child.standard_error().find("terminated by SIGTERM; nothing was kept of part 2/2"),
-                std::string::npos)
-          << child.standard_error();
+      EXPECT_TRUE(contains(child.standard_error(), "terminated by SIGTERM; nothing was kept of part 2/2"));
     }
   }
   ASSERT_EQ(run_part(path("in.csv"), path("out.csv"), {2, 2}).exit_code, 0);
@@ -583,8 +580,7 @@ TEST_F(InterruptedPart, IsNotWrittenByTwoProcessesAtOnce) {
   child.send_signal(SIGSTOP);  // it must not finish before the second one has started
   const FinishedProcess second = run_part(path("in.csv"), path("out.csv"), {2, 2});
   EXPECT_EQ(second.exit_code, 1);
-  EXPECT_NE(second.standard_error.find("is being written by another process"), std::string::npos)
-      << second.standard_error;
+  EXPECT_TRUE(contains(second.standard_error, "is being written by another process"));
   child.send_signal(SIGCONT);
   EXPECT_EQ(child.wait(kWaitTimeout), 0) << "the first goes on: " << child.standard_error();
   EXPECT_TRUE(std::filesystem::exists(manifest_of(part_of("out.csv", 2, 2))));

@@ -9,6 +9,7 @@
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/service/replay_fixture.h"
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 
 namespace buoyancy {
@@ -133,10 +134,8 @@ TEST_F(ReplayPoses, ReportsAndCountsInvalidPoses) {
   const FinishedProcess finished =
       replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1", "--json"});
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("event at 2 us is not a valid pose: shorter"), std::string::npos)
-      << finished.standard_error;
-  EXPECT_NE(finished.standard_error.find("event at 3 us is not a valid pose: fingerprint"), std::string::npos)
-      << finished.standard_error;
+  EXPECT_TRUE(contains(finished.standard_error, "event at 2 us is not a valid pose: shorter"));
+  EXPECT_TRUE(contains(finished.standard_error, "event at 3 us is not a valid pose: fingerprint"));
   const auto summary = parse_json(finished.standard_output);
   EXPECT_EQ(summary["requests"], 4);
   EXPECT_EQ(summary["computed"], 2);
@@ -149,9 +148,7 @@ TEST_F(ReplayPoses, HandlesPosesAroundCorruptSectionAndReportsIt) {
   write("in.lcmlog", before + "garbage" + log_of_poses(10));
   const FinishedProcess finished = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1"});
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("corrupt at byte " + std::to_string(before.size())),
-            std::string::npos)
-      << finished.standard_error;
+  EXPECT_TRUE(contains(finished.standard_error, "corrupt at byte " + std::to_string(before.size())));
   EXPECT_EQ(responses_in(path("out.lcmlog")).size(), 20U);
 }
 
@@ -281,11 +278,10 @@ TEST_F(ReplayPoses, WarnsAboutChannelsThatAreNotInLog) {
   const FinishedProcess misspelt =
       replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=1", "--pose", "POZE=1"});
   EXPECT_EQ(misspelt.exit_code, 0);
-  EXPECT_NE(misspelt.standard_error.find("warning: channel POZE: no events"), std::string::npos)
-      << misspelt.standard_error;
-  EXPECT_EQ(misspelt.standard_error.find("POSE:"), std::string::npos);
-  EXPECT_NE(replay(path("in.lcmlog"), path("out.lcmlog")).standard_error.find("channel BUOYANCY_STATES"),
-            std::string::npos);
+  EXPECT_TRUE(contains(misspelt.standard_error, "warning: channel POZE: no events"));
+  EXPECT_FALSE(contains(misspelt.standard_error, "POSE:"));
+  EXPECT_TRUE(
+      contains(replay(path("in.lcmlog"), path("out.lcmlog")).standard_error, "channel BUOYANCY_STATES"));
 }
 
 TEST_F(ReplayPoses, RejectsNameThatTwoBodiesShare) {
@@ -295,8 +291,7 @@ TEST_F(ReplayPoses, RejectsNameThatTwoBodiesShare) {
   write("in.lcmlog", log_of_poses(1));
   const FinishedProcess rejected = replay(path("in.lcmlog"), path("out.lcmlog"), {"--pose", "POSE=a"});
   EXPECT_EQ(rejected.exit_code, 2);
-  EXPECT_NE(rejected.standard_error.find("2 bodies are named 'a'"), std::string::npos)
-      << rejected.standard_error;
+  EXPECT_TRUE(contains(rejected.standard_error, "2 bodies are named 'a'"));
 }
 
 TEST_F(ReplayPoses, RejectsInvalidChannelsAndBodiesWithUsageError) {

@@ -1,6 +1,5 @@
 // Runs buoyancy-replay as a program on generated files.
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -11,6 +10,7 @@
 #include <sstream>
 #include <thread>
 
+#include <Eigen/LU>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/ioctl.h>
@@ -18,10 +18,13 @@
 #include <unistd.h>
 
 #include "base/unique_fd.h"
+#include "base/vec3.h"
 #include "messages/wire.h"
 #include "recording/event_log.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/service/replay_fixture.h"
+#include "tests/support/contains.h"
+#include "tests/support/csv.h"
 #include "tests/support/json.h"
 #include "tests/support/timeouts.h"
 
@@ -38,19 +41,6 @@ constexpr const char* kCube =
     "v -0.5 -0.5 0.5\nv 0.5 -0.5 0.5\nv 0.5 0.5 0.5\nv -0.5 0.5 0.5\n"
     "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
-using CsvRow = std::vector<std::string>;
-
-std::vector<CsvRow> rows(const std::string& csv) {
-  std::vector<CsvRow> result;
-  std::istringstream lines(csv);
-  for (std::string line; std::getline(lines, line);) {
-    CsvRow& row = result.emplace_back();
-    std::istringstream fields(line);
-    for (std::string field; std::getline(fields, field, ',');) row.push_back(field);
-  }
-  return result;
-}
-
 std::string pose_row(int utime, double height) {
   std::ostringstream row;
   row << utime << ",1,7,8," << height << ",1,0,0,0\n";
@@ -66,7 +56,7 @@ TEST_F(Replay, MatchesArchimedesPrincipleForEachCsvRow) {
   EXPECT_EQ(finished.standard_error, "");
   const std::string csv = read_file(path("out.csv"));
   EXPECT_EQ(csv.rfind(kWrenchHeader, 0), 0U) << csv;
-  const std::vector<CsvRow> responses = rows(csv);
+  const std::vector<CsvRow> responses = csv_rows(csv);
   ASSERT_EQ(responses.size(), 53U);
   for (std::size_t i = 0; i < 50; ++i) {
     const CsvRow& row = responses[i + 1];
@@ -88,7 +78,7 @@ TEST_F(Replay, WritesNumbersThatRoundTripExactly) {
   replay(path("in.csv"), path("out.lcmlog"));
   WrenchResponse response;
   ASSERT_FALSE(decode(events_of(path("out.lcmlog")).at(0).bytes, response));
-  const CsvRow row = rows(read_file(path("out.csv"))).at(1);
+  const CsvRow row = csv_rows(read_file(path("out.csv"))).at(1);
   const BodyWrench& wrench = response.bodies.at(0);
   EXPECT_EQ(std::stod(row[5]), wrench.force[2]);
   EXPECT_EQ(std::stod(row[6]), wrench.torque[0]);
@@ -230,19 +220,16 @@ TEST_F(Replay, HandlesIntactEventsOfCorruptLogAndFails) {
   log.resize(log.size() - 3);
   const FinishedProcess finished = replay(write("in.lcmlog", log), path("out.csv"));
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("corrupt at byte " + std::to_string(middle)), std::string::npos)
-      << finished.standard_error;
-  EXPECT_NE(finished.standard_error.find("the file ends within an event"), std::string::npos)
-      << finished.standard_error;
-  EXPECT_EQ(rows(read_file(path("out.csv"))).size(), 1U + 9U);
+  EXPECT_TRUE(contains(finished.standard_error, "corrupt at byte " + std::to_string(middle)));
+  EXPECT_TRUE(contains(finished.standard_error, "the file ends within an event"));
+  EXPECT_EQ(csv_rows(read_file(path("out.csv"))).size(), 1U + 9U);
 }
 
 TEST_F(Replay, ReportsAndCountsInvalidRequests) {
   const std::string log = event("BUOYANCY_STATES", 1, {1, 2, 3}) + log_of_requests(2);
   const FinishedProcess finished = replay(write("in.lcmlog", log), path("out.csv"), {"--json"});
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("shorter than the fixed fields"), std::string::npos)
-      << finished.standard_error;
+  EXPECT_TRUE(contains(finished.standard_error, "shorter than the fixed fields"));
   const auto summary = parse_json(finished.standard_output);
   EXPECT_EQ(summary["requests"], 3);
   EXPECT_EQ(summary["computed"], 2);
@@ -255,9 +242,8 @@ TEST_F(Replay, ReportsMalformedRowsByLineAndFails) {
   const std::string poses = kPoseHeader + pose_row(1, 0.0) + "2,1,zero,0,0,1,0,0,0\n" + pose_row(3, 0.0);
   const FinishedProcess finished = replay(write("in.csv", poses), path("out.csv"));
   EXPECT_EQ(finished.exit_code, 1);
-  EXPECT_NE(finished.standard_error.find("line 3: 'zero' in column 3"), std::string::npos)
-      << finished.standard_error;
-  EXPECT_EQ(rows(read_file(path("out.csv"))).size(), 3U);
+  EXPECT_TRUE(contains(finished.standard_error, "line 3: 'zero' in column 3"));
+  EXPECT_EQ(csv_rows(read_file(path("out.csv"))).size(), 3U);
 }
 
 TEST_F(Replay, PrintsFirstInputErrorsAndCountsRest) {
@@ -282,7 +268,7 @@ TEST_F(Replay, AcceptsOneMeshInsteadOfScene) {
   write("in.csv", kPoseHeader + pose_row(0, 0.25));
   const FinishedProcess finished = run({"--mesh", path("cube.obj"), path("in.csv"), path("out.csv")});
   ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
-  const CsvRow row = rows(read_file(path("out.csv"))).at(1);
+  const CsvRow row = csv_rows(read_file(path("out.csv"))).at(1);
   EXPECT_NEAR(std::stod(row[5]), 0.25 * 1025.0 * 9.80665, 1e-9);
   const FinishedProcess fast =
       run({"--mesh", path("cube.obj"), "--method", "fast", path("in.csv"), path("fast.csv")});
@@ -290,15 +276,14 @@ TEST_F(Replay, AcceptsOneMeshInsteadOfScene) {
   EXPECT_NE(read_file(path("fast.csv")), read_file(path("out.csv")));
 }
 
-// A wedge with its corners at (x, y, z): the same mesh, written as it is placed.
+// The same mesh, placed by options, and written as it is placed.
 TEST_F(Replay, PlacesTheMeshAsScaleAndUpSay) {
-  const auto wedge = [](std::function<std::array<double, 3>(double, double, double)> place, bool mirror) {
+  const auto wedge = [](const Mat3& place) {
     std::ostringstream obj;
-    for (const auto& [x, y, z] :
-         {std::array{0.0, 0.0, 0.0}, {2.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.5, 0.25, 3.0}}) {
-      const auto [a, b, c] = place(x, y, z);
-      obj << "v " << a << ' ' << b << ' ' << c << '\n';
+    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(0, 1, 0), Vec3(0.5, 0.25, 3)}) {
+      obj << "v " << (place * corner).transpose() << '\n';
     }
+    const bool mirror = place.determinant() < 0.0;
     obj << (mirror ? "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n" : "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     return obj.str();
   };
@@ -311,60 +296,27 @@ TEST_F(Replay, PlacesTheMeshAsScaleAndUpSay) {
     return read_file(path("out.csv"));
   };
   write("in.csv", kPoseHeader + pose_row(0, -0.25) + "1,1,0,0,-0.5,0.8,0.6,0,0\n");
-  const std::string as_drawn = wedge([](double x, double y, double z) { return std::array{x, y, z}; }, false);
-  const auto expect = [&](const std::vector<std::string>& options, const auto& place, bool mirror) {
-    EXPECT_EQ(responses(as_drawn, options), responses(wedge(place, mirror), {})) << options.front();
+  const auto rows = [](const Vec3& x, const Vec3& y, const Vec3& z) {
+    return (Mat3() << x.transpose(), y.transpose(), z.transpose()).finished();
   };
-  EXPECT_EQ(responses(as_drawn, {"--scale", "1", "--up", "z"}), responses(as_drawn, {}));
-  expect(
-      {"--scale", "0.5"},
-      [](double x, double y, double z) {
-        return std::array{x / 2, y / 2, z / 2};
-      },
-      false);
-  expect(
-      {"--scale", "1,1,1.5"},
-      [](double x, double y, double z) {
-        return std::array{x, y, 1.5 * z};
-      },
-      false);
-  expect(
-      {"--scale=-1,1,1"},
-      [](double x, double y, double z) {
-        return std::array{-x, y, z};
-      },
-      true);
-  expect(
-      {"--up", "y"},
-      [](double x, double y, double z) {
-        return std::array{x, -z, y};
-      },
-      false);
-  expect(
-      {"--up=-y"},
-      [](double x, double y, double z) {
-        return std::array{x, z, -y};
-      },
-      false);
-  expect(
-      {"--up=-z"},
-      [](double x, double y, double z) {
-        return std::array{x, -y, -z};
-      },
-      false);
-  expect(
-      {"--up", "x"},
-      [](double x, double y, double z) {
-        return std::array{-z, y, x};
-      },
-      false);
-  // The axis of the file becomes up, whatever the factors.
-  expect(
-      {"--up", "y", "--scale", "1,-2,1"},
-      [](double x, double y, double z) {
-        return std::array{x, z, 2 * y};
-      },
-      true);
+  const Vec3 x = Vec3::UnitX();
+  const Vec3 y = Vec3::UnitY();
+  const Vec3 z = Vec3::UnitZ();
+  const std::vector<std::pair<std::vector<std::string>, Mat3>> cases{
+      {{"--scale", "1", "--up", "z"}, rows(x, y, z)},
+      {{"--scale", "0.5"}, rows(x / 2, y / 2, z / 2)},
+      {{"--scale", "1,1,1.5"}, rows(x, y, 1.5 * z)},
+      {{"--scale=-1,1,1"}, rows(-x, y, z)},
+      {{"--up", "y"}, rows(x, -z, y)},
+      {{"--up=-y"}, rows(x, z, -y)},
+      {{"--up=-z"}, rows(x, -y, -z)},
+      {{"--up", "x"}, rows(-z, y, x)},
+      {{"--up=-x"}, rows(z, y, -x)},
+      // The axis of the file becomes up, whatever the factors.
+      {{"--up", "y", "--scale", "1,-2,1"}, rows(x, z, 2 * y)}};
+  for (const auto& [options, place] : cases) {
+    EXPECT_EQ(responses(wedge(Mat3::Identity()), options), responses(wedge(place), {})) << options.front();
+  }
 }
 
 TEST_F(Replay, WarnsOfAMeshOnItsSideUnlessUpStandsItUp) {
@@ -377,11 +329,10 @@ TEST_F(Replay, WarnsOfAMeshOnItsSideUnlessUpStandsItUp) {
     return run(arguments).standard_error;
   };
   const std::string warning = run(plain).standard_error;
-  EXPECT_NE(warning.find(": warning: "), std::string::npos) << warning;
-  EXPECT_NE(warning.find("Pass --up y; in a scene file, orientation = [0.70710678"), std::string::npos)
-      << warning;
+  EXPECT_TRUE(contains(warning, ": warning: "));
+  EXPECT_TRUE(contains(warning, "Pass --up y; in a scene file, orientation = [0.70710678"));
   EXPECT_EQ(with("--up=y"), "");
-  EXPECT_NE(with("--up=x").find("Pass --up y;"), std::string::npos);
+  EXPECT_TRUE(contains(with("--up=x"), "Pass --up y;"));
 }
 
 TEST_F(Replay, SaysWhichScaleAndAxisAreExpected) {
@@ -392,11 +343,10 @@ TEST_F(Replay, SaysWhichScaleAndAxisAreExpected) {
       error_with("--scale=1,0,1"),
       "buoyancy-replay: --scale: '1,0,1'; expected a number above 0, or factors X,Y,Z of the three axes of "
       "which none is 0. Likely cause: a mesh without an extent. For millimetres write --scale 0.001.\n");
-  EXPECT_NE(error_with("--scale=-1").find("such as --scale=-1,1,1"), std::string::npos);
+  EXPECT_TRUE(contains(error_with("--scale=-1"), "such as --scale=-1,1,1"));
   for (const std::string scale : {"0", "nan", "inf", "1,1", "1,1,1,1", "1,1,inf", "1,1,", "large"}) {
-    EXPECT_NE(error_with("--scale=" + scale).find("'" + scale + "'; expected a number above 0, or factors"),
-              std::string::npos)
-        << scale;
+    EXPECT_TRUE(
+        contains(error_with("--scale=" + scale), "'" + scale + "'; expected a number above 0, or factors"));
   }
   for (const std::string axis : {"w", "xy", "-", "--x", "Y"}) {
     EXPECT_EQ(error_with("--up=" + axis), "buoyancy-replay: --up: '" + axis +
@@ -473,7 +423,7 @@ TEST_F(Replay, ReportsTheLimitOnTheSizeOfItsOutput) {
                              write("in.lcmlog", log_of_requests(100)), path("out.csv")}),
                  kWaitTimeout);
   EXPECT_EQ(limited.exit_code, 1) << limited.standard_error;
-  EXPECT_NE(limited.standard_error.find("File too large"), std::string::npos) << limited.standard_error;
+  EXPECT_TRUE(contains(limited.standard_error, "File too large"));
 }
 
 TEST_F(Replay, EndsItsOutputWithWholeRowWhenTerminated) {
@@ -489,11 +439,10 @@ TEST_F(Replay, EndsItsOutputWithWholeRowWhenTerminated) {
   }
   child.send_signal(SIGTERM);
   EXPECT_EQ(child.wait(kWaitTimeout), 1);
-  EXPECT_NE(child.standard_error().find("terminated by SIGTERM"), std::string::npos)
-      << child.standard_error();
+  EXPECT_TRUE(contains(child.standard_error(), "terminated by SIGTERM"));
   const std::string csv = read_file(path("out.csv"));
   EXPECT_EQ(csv.back(), '\n');
-  const std::vector<CsvRow> responses = rows(csv);
+  const std::vector<CsvRow> responses = csv_rows(csv);
   EXPECT_GT(responses.size(), 1U);
   EXPECT_LT(responses.size(), 200'001U);
   EXPECT_EQ(responses.back().size(), 15U);
@@ -519,8 +468,7 @@ TEST_F(Replay, StopsOnSignalIfItsPipeHasNoActiveReader) {
     }
     child.send_signal(signal);
     EXPECT_EQ(child.wait(kWaitTimeout), 1);
-    EXPECT_NE(child.standard_error().find("its reader has stalled"), std::string::npos)
-        << child.standard_error();
+    EXPECT_TRUE(contains(child.standard_error(), "its reader has stalled"));
     std::string csv(static_cast<std::size_t>(waiting()), ' ');
     ASSERT_EQ(::read(reader.value(), csv.data(), csv.size()), static_cast<ssize_t>(csv.size()));
     EXPECT_EQ(csv.rfind(kWrenchHeader, 0), 0U);
@@ -576,8 +524,7 @@ TEST_F(Replay, EndsAtEventIfLogIsTruncatedMeanwhile) {
     }
   }
   EXPECT_EQ(child.wait(kWaitTimeout), 1);
-  EXPECT_NE(child.standard_error().find("it was truncated or replaced while it was read"), std::string::npos)
-      << child.standard_error();
+  EXPECT_TRUE(contains(child.standard_error(), "it was truncated or replaced while it was read"));
   const std::vector<LoggedEvent> events = events_of(write("out_copy.lcmlog", output));
   ASSERT_GE(events.size(), kRequests / 2U - 10);  // the last kilobyte before the fault is not used
   std::string again;
@@ -593,8 +540,7 @@ TEST_F(Replay, EndsWithinDamageAfterSignal) {
   ASSERT_TRUE(wait_until_it_handles_sigterm(child)) << child.standard_error();
   child.send_signal(SIGTERM);
   EXPECT_EQ(child.wait(kWaitTimeout), 1);
-  EXPECT_NE(child.standard_error().find("terminated by SIGTERM"), std::string::npos)
-      << child.standard_error();
+  EXPECT_TRUE(contains(child.standard_error(), "terminated by SIGTERM"));
 }
 
 TEST_F(Replay, AcceptsOpenMeshesWithDryBoundaryOnRequest) {
@@ -606,13 +552,12 @@ TEST_F(Replay, AcceptsOpenMeshesWithDryBoundaryOnRequest) {
   const std::vector<std::string> arguments{"--mesh", mesh, path("in.csv"), path("out.csv")};
   const FinishedProcess rejected = run(arguments);
   EXPECT_EQ(rejected.exit_code, 2);
-  EXPECT_NE(rejected.standard_error.find("--open dry_boundary"), std::string::npos)
-      << rejected.standard_error;
+  EXPECT_TRUE(contains(rejected.standard_error, "--open dry_boundary"));
   std::vector<std::string> accepting = arguments;
   accepting.insert(accepting.end(), {"--open", "dry_boundary"});
   const FinishedProcess accepted = run(accepting);
   ASSERT_EQ(accepted.exit_code, 0) << accepted.standard_error;
-  const std::vector<CsvRow> responses = rows(read_file(path("out.csv")));
+  const std::vector<CsvRow> responses = csv_rows(read_file(path("out.csv")));
   ASSERT_EQ(responses.size(), 3U);
   EXPECT_EQ(responses[1][2], "0");
   EXPECT_NEAR(std::stod(responses[1][9]), 0.25, 1e-12);

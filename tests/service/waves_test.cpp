@@ -8,6 +8,7 @@
 #include "tests/service/box_in_waves.h"
 #include "tests/service/raw_lcm.h"
 #include "tests/service/running_service.h"
+#include "tests/support/contains.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
@@ -50,15 +51,36 @@ TEST(ServiceInWaves, PublishesItsSeaOnceASecond) {
   EXPECT_EQ(receive_sea(socket), expected);
 }
 
-TEST(ServiceInWaves, PublishesTheNewSeaAfterAReload) {
+// Between two statuses, a service publishes its sea.
+void expect_no_sea(RawLcmSocket& socket) {
+  for (int statuses = 0; statuses < 2;) {
+    const auto message = socket.receive_any(kWaitTimeout);
+    ASSERT_TRUE(message);
+    EXPECT_NE(message->channel, "BUOYANCY_SEA");
+    statuses += message->channel == "BUOYANCY_STATUS" ? 1 : 0;
+  }
+}
+
+TEST(ServiceInWaves, PublishesTheSeaOfEachReload) {
   RawLcmSocket socket;
   RunningService service({}, box_in(kSwell));
-  const SeaState before = receive_sea(socket);
-  service.write("scene.toml", box_in(kHigherSwell));
-  service.child().send_signal(SIGHUP);
-  SeaState after = before;
-  while (after == before) after = receive_sea(socket);
-  EXPECT_EQ(after, sea_of(kHigherSwell, before.instance_id));
+  const std::int64_t instance = receive_sea(socket).instance_id;
+  std::int64_t reloads = 0;
+  for (const std::string& water : {kHigherSwell, std::string(), kSwell, kHigherSwell, std::string()}) {
+    service.write("scene.toml", box_in(water));
+    service.child().send_signal(SIGHUP);
+    ++reloads;
+    ASSERT_TRUE(wait_for_status(socket, [&](const ServiceStatus& now) { return now.reloads == reloads; }));
+    if (water.empty()) {
+      // One that was on its way before the status may still come.
+      ASSERT_TRUE(wait_for_status(socket, [](const ServiceStatus&) { return true; }));
+      expect_no_sea(socket);
+    } else {
+      SeaState sea;
+      for (int i = 0; i < 2; ++i) sea = receive_sea(socket);
+      EXPECT_EQ(sea, sea_of(water, instance));
+    }
+  }
 }
 
 TEST(ServiceInWaves, UsesTheSeaThatItReceives) {
@@ -87,30 +109,24 @@ TEST(ServiceInWaves, UsesTheSeaThatItReceives) {
   EXPECT_GT(status->counters.wave_patches, 0);
   // The service logs warnings after it has published the status that counts them.
   ASSERT_TRUE(wait_for_status(socket, [](const ServiceStatus&) { return true; }));
-  EXPECT_NE(service.log().find("gravity = 9.81"), std::string::npos) << service.log();
+  EXPECT_TRUE(contains(service.log(), "gravity = 9.81"));
 
   send_sea(socket, sea_of(kBreakingWave, 77));
   ASSERT_TRUE(
       wait_for_status(socket, [](const ServiceStatus& now) { return now.counters.seas_received > 1; }));
   ASSERT_TRUE(wait_for_status(socket, [](const ServiceStatus&) { return true; }));
-  EXPECT_NE(service.log().find("at which such waves break"), std::string::npos) << service.log();
+  EXPECT_TRUE(contains(service.log(), "at which such waves break"));
 }
 
 TEST(ServiceInWaves, LogsThatTheWavesOfItsSceneWouldBreak) {
   const RunningService service({}, box_in(kBreakingWave));
-  EXPECT_NE(service.log().find("at which such waves break"), std::string::npos) << service.log();
+  EXPECT_TRUE(contains(service.log(), "at which such waves break"));
 }
 
 TEST(ServiceInWaves, PublishesNoSeaThatItReceives) {
   RawLcmSocket socket;
   const RunningService service({}, box_in("waves = \"received\"\n"));
-  // A sea would come between two statuses.
-  for (int statuses = 0; statuses < 2;) {
-    const auto message = socket.receive_any(kWaitTimeout);
-    ASSERT_TRUE(message);
-    EXPECT_NE(message->channel, "BUOYANCY_SEA");
-    statuses += message->channel == "BUOYANCY_STATUS" ? 1 : 0;
-  }
+  expect_no_sea(socket);
 }
 
 }  // namespace
