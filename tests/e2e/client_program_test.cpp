@@ -258,8 +258,8 @@ TEST_F(BuoyancyClient, WarnsAboutLargeStepBeforeAndEnergyAfterRun) {
   const FinishedProcess table =
       run_to_end(client_command(plate, {"--embedded", "--step", "0.05", "--duration", "20"}), kRunTimeout);
   EXPECT_EQ(table.exit_code, 0);
-  EXPECT_TRUE(contains(table.standard_output, "warning body 1 (plate): step"));
-  EXPECT_TRUE(contains(table.standard_output, "warning body 1 (plate): mechanical"));
+  EXPECT_TRUE(contains(table.standard_output, "warning     body 1 (plate): step"));
+  EXPECT_TRUE(contains(table.standard_output, "warning     body 1 (plate): mechanical"));
   simulate(plate, {"--embedded", "--step", "0.007", "--duration", "20"});
 }
 

@@ -272,7 +272,8 @@ TEST_F(ComparedLoads, AgreeWithThemselves) {
   EXPECT_EQ(same["bodies"][1]["loads"], 0);
   const FinishedProcess text =
       replay(path("in.csv"), path("new.lcmlog"), {"--compare", path("baseline.lcmlog")});
-  EXPECT_TRUE(contains(text.standard_output, " 1 loads: 17 compared, largest difference over tolerance 0\n"));
+  EXPECT_TRUE(
+      contains(text.standard_output, "       1 loads: 17 compared, largest difference over tolerance 0\n"));
 }
 
 TEST_F(ComparedLoads, NameTheFieldThatDiffers) {
