@@ -227,8 +227,9 @@ TEST_F(ReportPageOfTanks, PlacesMetacentreAndCentreOfMass) {
                   expected.metacenters_W[i / 3][static_cast<Eigen::Index>(i % 3)], 1e-6)
           << row << ' ' << i;
     }
-    EXPECT_GT((expected.metacenters_W[0] - of_hull.metacenters_W[0]).norm(), 0.01)
-        << "less volume, and elsewhere";
+    if (row > 0) continue;  // not every attitude immerses what is flooded
+    EXPECT_GT(expected.metacenters_W[0].z(), of_hull.metacenters_W[0].z() + 0.01)
+        << "less volume, and that higher";
   }
   // 12 t at -1 m, 6 t of water at 0.4 m, and 1.0625 t of liquid in the ring, which is 0.41667 m high.
   const auto mass_center = browser()
