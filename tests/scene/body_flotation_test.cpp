@@ -16,6 +16,10 @@
 namespace buoyancy {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::json;
 
 std::string bar(int id, const std::string& client) {
@@ -25,15 +29,7 @@ std::string bar(int id, const std::string& client) {
 const std::string kWater = "[water]\ndensity = 1000\n";
 
 std::vector<std::string> warnings_of(const Scene& scene) {
-  std::vector<std::string> messages;
-  for (const Warning& warning : flotation_warnings(scene, scene_flotation(scene))) {
-    messages.push_back(warning.message());
-  }
-  return messages;
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
+  return messages_of(flotation_warnings(scene, scene_flotation(scene)));
 }
 
 TEST(SceneFlotation, FindsAllAttitudesAndMarksTheOneReached) {
@@ -55,16 +51,12 @@ TEST(SceneFlotation, WarnsOfBodiesThatCapsizeSinkOrStartUnstable) {
   const Scene scene =
       scene_of(kWater + bar(1, "density = 500\n") + bar(2, capsizes) + bar(3, "density = 2000\n") +
                bar(4, "density = 100\n") + bar(5, "density = 2000\n"));
-  const std::vector<std::string> warnings = warnings_of(scene);
-  ASSERT_EQ(warnings.size(), 3U);
-  EXPECT_TRUE(contains(warnings[0],
-                       "body 1: at its orientation it is in balance but not stable, and turns by "
-                       "45 degrees"))
-      << warnings[0];
-  EXPECT_TRUE(contains(warnings[1], "body 2: turns by 178.9 degrees")) << warnings[1];
-  EXPECT_TRUE(contains(warnings[1], "the body capsizes")) << warnings[1];
-  EXPECT_TRUE(contains(warnings[2], "body 3 and 1 other: a mass of 8000 kg; expected less than the 4000 kg"))
-      << warnings[2];
+  EXPECT_THAT(
+      warnings_of(scene),
+      ElementsAre(
+          HasSubstr("body 1: at its orientation it is in balance but not stable, and turns by 45 degrees"),
+          AllOf(HasSubstr("body 2: turns by 178.9 degrees"), HasSubstr("the body capsizes")),
+          HasSubstr("body 3 and 1 other: a mass of 8000 kg; expected less than the 4000 kg")));
 }
 
 TEST(SceneFlotation, DoesNotWarnOfAnUnstableOrientationThatIsNotTheStart) {
@@ -81,14 +73,12 @@ TEST(SceneFlotation, TakesASphereAsItIsPlaced) {
 
 TEST(SceneFlotation, WarnsOfOpenMeshesThatTakeInWater) {
   const TempDir directory;
-  const std::string mesh =
-      directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const std::string mesh = directory.write("open.obj", kOpenObj);
   const Scene scene = scene_of("[[body]]\nid = 1\nmesh = \"" + mesh +
                                "\"\nopen = \"dry_boundary\"\n[body.client]\nmass = 1e4\ncenter_of_mass = [0, "
                                "0, 0]\ninertia = [1, 1, 1]\n");
   EXPECT_EQ(scene_flotation(scene).at(0).flotation->outcome, FlotationOutcome::kTakesInWater);
-  ASSERT_EQ(warnings_of(scene).size(), 1U);
-  EXPECT_TRUE(contains(warnings_of(scene)[0], "takes in water"));
+  EXPECT_THAT(warnings_of(scene), ElementsAre(HasSubstr("takes in water")));
 }
 
 TEST(SceneFlotation, WarnsOfWhatTheClientRefuses) {
@@ -129,7 +119,7 @@ TEST(SceneFlotation, SharesEqualBodiesAndLeavesOutThoseBeyondTheLimit) {
   EXPECT_NE(first[0].flotation, nullptr);
   EXPECT_TRUE(first[1].left_out);
   EXPECT_EQ(first[2].flotation, first[0].flotation);
-  EXPECT_TRUE(contains(scene_report_text(scene, {.flotation = &first}), "  attitudes     left out"));
+  EXPECT_THAT(scene_report_text(scene, {.flotation = &first}), HasSubstr("  attitudes     left out"));
 }
 
 TEST(SceneFlotation, IsReportedAsText) {
@@ -142,7 +132,7 @@ TEST(SceneFlotation, IsReportedAsText) {
         "  attitudes     4 stable attitudes; * is where it turns to from its orientation\n",
         "              * draft 0.7071 m, heel -45 deg, trim 0 deg, GM 0.2357 and 3.536 m, energy 4623 J\n",
         "                draft 0.7071 m, heel 135 deg, trim 0 deg, GM"}) {
-    EXPECT_TRUE(contains(text, expected)) << "missing: " << expected << "\n" << text;
+    EXPECT_THAT(text, HasSubstr(expected));
   }
 }
 
@@ -189,7 +179,7 @@ TEST(SubdivisionReport, ListsPartsCompartmentsAndTanks) {
         "  tank          'fuel', 1 m^3, holds 0.75 m^3, fill 0.75, 850 kg/m^3, 637.5 kg\n",
         "  used by       part 'right' of body 1\n", "  used by       body 1\n",
         "  used by       compartment 'bow' of body 1; tank 'fuel' of body 1\n"}) {
-    EXPECT_TRUE(contains(text, expected)) << "missing: " << expected << "\n" << text;
+    EXPECT_THAT(text, HasSubstr(expected));
   }
   const Json report = parse_json(scene_report_json(scene));
   const Json& body = report["bodies"][0];
@@ -208,7 +198,7 @@ TEST(SubdivisionReport, ListsPartsCompartmentsAndTanks) {
 TEST(SubdivisionReport, StaysTheSameWithoutThem) {
   const std::string report = scene_report_json(scene_of(scene_with_crate()));
   for (const char* word : {"\"parts\"", "\"compartments\"", "\"tanks\"", "\"sections\""})
-    EXPECT_FALSE(contains(report, word));
+    EXPECT_THAT(report, Not(HasSubstr(word)));
 }
 
 }  // namespace

@@ -16,6 +16,29 @@
 namespace buoyancy {
 namespace {
 
+void expect_same_motions(const BodyMotions& actual, const BodyMotions& expected, double tolerance) {
+  const auto expect_same = [tolerance](const std::optional<double>& a, const std::optional<double>& b,
+                                       const char* name) {
+    ASSERT_EQ(a.has_value(), b.has_value()) << name;
+    if (a) expect_relative(*a, *b, tolerance, name);
+  };
+  expect_relative(actual.natural->heave.frequency, expected.natural->heave.frequency, tolerance, "heave");
+  expect_relative(actual.natural->roll.frequency, expected.natural->roll.frequency, tolerance, "roll");
+  expect_relative(actual.natural->pitch.frequency, expected.natural->pitch.frequency, tolerance, "pitch");
+  expect_same(actual.draft, expected.draft, "draft");
+  expect_same(actual.terminal_velocity, expected.terminal_velocity, "terminal velocity");
+  expect_relative(actual.max_explicit_step, expected.max_explicit_step, tolerance, "step");
+}
+
+void expect_same_damping(const BodyMotions& actual, const BodyMotions& expected, double tolerance) {
+  for (const auto motion : {&NaturalMotions::heave, &NaturalMotions::roll, &NaturalMotions::pitch}) {
+    const NaturalMotion& a = (*actual.natural).*motion;
+    const NaturalMotion& b = (*expected.natural).*motion;
+    expect_relative(a.damping_ratio, b.damping_ratio, tolerance, "damping ratio");
+    expect_relative(a.damping_ratio_at_amplitude, b.damping_ratio_at_amplitude, tolerance, "at amplitude");
+  }
+}
+
 TEST(BodyMotions, PeriodsOfBoxHaveTheirClosedForms) {
   struct Case {
     const char* immersion;
@@ -111,13 +134,8 @@ TEST(BodyMotions, MatricesMayBeGivenAboutAnyCenter) {
   body.added_mass->center_B = center_of_mass_B;
   const Scene moved = Scene::prepare(*description).value();
   const BodyMotions motions = *scene_motions(moved)[0].motions;
-  for (const auto motion : {&NaturalMotions::heave, &NaturalMotions::roll, &NaturalMotions::pitch}) {
-    const NaturalMotion& actual = (*motions.natural).*motion;
-    const NaturalMotion& reference = (*expected.natural).*motion;
-    expect_relative(actual.frequency, reference.frequency, 1e-10, "frequency");
-    expect_relative(actual.damping_ratio, reference.damping_ratio, 1e-10, "damping ratio");
-  }
-  expect_relative(motions.max_explicit_step, expected.max_explicit_step, 1e-10, "step");
+  expect_same_motions(motions, expected, 1e-10);
+  expect_same_damping(motions, expected, 1e-10);
   expect_relative(motions.added_mass_ratio, expected.added_mass_ratio, 1e-10, "ratio");
 }
 
@@ -158,17 +176,8 @@ TEST(BodyMotions, DoNotDependOnHeadingAndUpDirection) {
       rotation_between(Vec3::UnitZ(), up) * Eigen::Quaterniond(Eigen::AngleAxisd(2.0, Vec3::UnitZ()));
   const Scene turned = Scene::prepare(*description).value();
   const BodyMotions motions = *scene_motions(turned)[0].motions;
-  const auto expect_equal = [](const NaturalMotion& motion, const NaturalMotion& reference,
-                               const char* name) {
-    expect_relative(motion.frequency, reference.frequency, 1e-8, name);
-    expect_relative(motion.damping_ratio, reference.damping_ratio, 1e-8, name);
-    expect_relative(motion.damping_ratio_at_amplitude, reference.damping_ratio_at_amplitude, 1e-8, name);
-  };
-  expect_equal(motions.natural->heave, expected.natural->heave, "heave");
-  expect_equal(motions.natural->roll, expected.natural->roll, "roll");
-  expect_equal(motions.natural->pitch, expected.natural->pitch, "pitch");
-  expect_relative(motions.terminal_velocity.value(), expected.terminal_velocity.value(), 1e-8, "terminal");
-  expect_relative(motions.max_explicit_step, expected.max_explicit_step, 1e-8, "step");
+  expect_same_motions(motions, expected, 1e-8);
+  expect_same_damping(motions, expected, 1e-8);
 }
 
 TEST(BodyMotions, TerminalVelocityBalancesWeightBuoyancyAndDrag) {
@@ -350,10 +359,7 @@ TEST(BodyMotions, FullTanksAreBallast) {
       kWorld +
       "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 1, 0.5] }\n[body.client]\nmass = 600\n" +
       "center_of_mass = [0, 0, -0.025]\ninertia = [" + format_vector(inertia, 17) + "]\n");
-  expect_relative(tank.natural->heave.period(), rigid.natural->heave.period(), 1e-9, "heave");
-  expect_relative(tank.natural->roll.period(), rigid.natural->roll.period(), 1e-9, "roll");
-  expect_relative(tank.natural->pitch.period(), rigid.natural->pitch.period(), 1e-9, "pitch");
-  expect_relative(tank.max_explicit_step, rigid.max_explicit_step, 1e-9, "step");
+  expect_same_motions(tank, rigid, 1e-9);
 }
 
 TEST(BodyMotions, FloodedCompartmentsAreCutOut) {
@@ -368,11 +374,7 @@ TEST(BodyMotions, FloodedCompartmentsAreCutOut) {
                  "shape = { type = \"box\", size = [1.2, 1, 0.5] }\nposition = [-0.4, 0, 0]\n" + client);
   EXPECT_EQ(flooded.balance, VerticalBalance::kFloats);
   expect_relative(flooded.draft.value(), 0.25, 1e-12, "draft");
-  expect_relative(flooded.natural->heave.period(), cut.natural->heave.period(), 1e-9, "heave");
-  expect_relative(flooded.natural->roll.period(), cut.natural->roll.period(), 1e-9, "roll");
-  expect_relative(flooded.natural->pitch.period(), cut.natural->pitch.period(), 1e-9, "pitch");
-  expect_relative(flooded.terminal_velocity.value(), cut.terminal_velocity.value(), 1e-9, "terminal");
-  expect_relative(flooded.max_explicit_step, cut.max_explicit_step, 1e-9, "step");
+  expect_same_motions(flooded, cut, 1e-9);
 }
 
 TEST(BodyMotions, AreThoseOfTheAttitudeAtWhichABodyStarts) {

@@ -1,29 +1,29 @@
+#include <array>
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "base/format.h"
 #include "scene/scene_report.h"
 #include "tests/scene/scene_texts.h"
 
 namespace buoyancy {
 namespace {
 
-Scene prepared(const std::string& text) {
-  Expected<Scene> scene = Scene::prepare(parse(text).value());
-  return *std::move(scene);
-}
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 std::vector<std::string> warnings_of(const std::string& text) {
-  std::vector<std::string> messages;
-  for (const Warning& warning : scene_warnings(prepared(text))) messages.push_back(warning.message());
-  return messages;
+  return messages_of(scene_warnings(prepared(text)));
 }
 
 void expect_one_warning(const std::string& text, const std::string& start) {
-  const std::vector<std::string> warnings = warnings_of(text);
-  ASSERT_EQ(warnings.size(), 1U) << (warnings.empty() ? "none" : warnings[1]);
-  EXPECT_EQ(warnings[0].rfind(start, 0), 0U) << warnings[0];
+  EXPECT_THAT(warnings_of(text), ElementsAre(StartsWith(start)));
 }
 
 TEST(CoefficientWarnings, DoesNotWarnAboutUsualCoefficients) {
@@ -51,31 +51,69 @@ TEST(CoefficientWarnings, WarnsAboutMethodsWithoutABoundInWaves) {
       "[water.waves]\ntype = \"regular\"\nheight = 0.1\nperiod = 8\n[[body]]\nid = 7\nshape = { type = "
       "\"box\" }\nmethod = \"fast_surface\"\n";
   EXPECT_TRUE(warnings_of(body).empty());
-  expect_one_warning(
-      body + "[body.drag]\nlinear = [1, 1, 1, 1, 1, 1]\n",
-      "pool.toml: body 7: method = \"fast_surface\" with drag or added mass in waves; expected "
-      "\"hierarchical\"");
+  for (const std::string table : {"[body.drag]\nlinear", "[body.added_mass]\nmatrix"}) {
+    expect_one_warning(
+        body + table + " = [1, 1, 1, 1, 1, 1]\n",
+        "pool.toml: body 7: method = \"fast_surface\" with drag or added mass in waves; expected "
+        "\"hierarchical\"");
+  }
+}
+
+// A box of 1 x 2 x 3 m with one of the tables.
+std::string slab(const std::string& table) {
+  return "[[body]]\nid = 7\nshape = { type = \"box\", size = [1, 2, 3] }\n" + table + "\n";
 }
 
 TEST(CoefficientWarnings, WarnsAboutCentersFarFromTheMesh) {
-  const auto at = [](const char* center) {
-    return scene_with_crate("[body.added_mass]\nmatrix = [1, 1, 1, 1, 1, 1]\ncenter = [0, 0, " +
-                            std::string(center) + "]\n");
-  };
-  EXPECT_TRUE(warnings_of(at("2.2")).empty()) << "the box ends at 0.5 m and its diagonal is 1.73 m";
-  expect_one_warning(at("2.3"),
-                     "pool.toml: body 7: [body.added_mass] center = [0, 0, 2.3] is 1.8 m from the mesh");
+  for (const auto& [section, key] : {std::pair{"[body.drag]", "linear"}, {"[body.added_mass]", "matrix"}}) {
+    const auto at = [&](const Vec3& center) {
+      return slab(std::string(section) + "\n" + key + " = [1, 1, 1, 1, 1, 1]\ncenter = [" +
+                  format_vector(center) + "]");
+    };
+    // The faces are at 0.5, 1 and 1.5 m, and the diagonal is 3.742 m.
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {-1.0, 1.0}) {
+        Vec3 center(0.4, -0.8, 1.2);
+        center[axis] = side * (0.5 * (1 + axis) + 3.7);
+        EXPECT_TRUE(warnings_of(at(center)).empty()) << center.transpose();
+        center[axis] = side * (0.5 * (1 + axis) + 3.8);
+        expect_one_warning(at(center), "pool.toml: body 7: " + std::string(section) + " center = [" +
+                                           format_vector(center) + "] is 3.8 m from the mesh");
+      }
+    }
+  }
 }
 
 TEST(CoefficientWarnings, WarnsAboutCoefficientsOfAnotherSize) {
+  const std::array<std::string, 6> axes{"x", "y", "z", "about x", "about y", "about z"};
+  const double mass = 1025.0 * 100.0 * 6.0;  // [kg], 100 times the displaced water
+  const double drag = 100.0 * 0.5 * 1025.0 * 22.0;
+  const double square = 14.0;  // [m^2], of the diagonal
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    const auto with = [&](const std::string& table, double number) {
+      Vec6 numbers = Vec6::Ones();
+      numbers[static_cast<Eigen::Index>(axis)] = number;
+      return slab(table + "[" + format_vector(numbers.head<3>()) + ", " + format_vector(numbers.tail<3>()) +
+                  "]");
+    };
+    const std::string added_mass = "[body.added_mass]\nmatrix = ", quadratic = "[body.drag]\nquadratic = ";
+    const double most_mass = axis < 3 ? mass : mass * square;
+    const double most_drag = axis < 3 ? drag : drag * square * std::sqrt(square);
+    EXPECT_TRUE(warnings_of(with(added_mass, 0.999 * most_mass)).empty()) << axes[axis];
+    EXPECT_TRUE(warnings_of(with(quadratic, 0.999 * most_drag)).empty()) << axes[axis];
+    EXPECT_THAT(
+        warnings_of(with(added_mass, 1.001 * most_mass)),
+        ElementsAre(AllOf(StartsWith("pool.toml: body 7: [body.added_mass] matrix " + axes[axis] + " = "),
+                          HasSubstr("expected at most 100 times the displaced water: "))));
+    EXPECT_THAT(
+        warnings_of(with(quadratic, 1.001 * most_drag)),
+        ElementsAre(AllOf(StartsWith("pool.toml: body 7: [body.drag] quadratic " + axes[axis] + " = "),
+                          HasSubstr("expected a drag coefficient of at most 100"))));
+  }
   expect_one_warning(
       scene_with_crate("[body.added_mass]\nmatrix = [1, 110000, 1, 1, 1, 1]\n"),
       "pool.toml: body 7: [body.added_mass] matrix y = 110000 kg; expected at most 100 times the "
       "displaced water: 1.025e+05 kg for this mesh");
-  expect_one_warning(
-      scene_with_crate("[body.drag]\nquadratic = [1, 1, 1, 1, 1, 1e8]\n"),
-      "pool.toml: body 7: [body.drag] quadratic about z = 100000000 N m/(rad/s)^2; expected a drag "
-      "coefficient of at most 100");
 }
 
 TEST(CoefficientWarnings, WarnsAboutEqualBodiesOnce) {

@@ -24,11 +24,6 @@ inline constexpr double kGravity = 9.8;
 inline constexpr double kMass = kDensity * kLength * kBeam * kDraft;
 inline constexpr double kWaterplane = kLength * kBeam;
 
-inline Scene prepared(const std::string& text) {
-  Expected<Scene> scene = Scene::prepare(parse(text).value());
-  return *std::move(scene);
-}
-
 inline const std::string kWorld = "[world]\ngravity = 9.8\n[water]\ndensity = 1000\nlevel = 3\n";
 
 inline std::string box_scene(const std::string& tables, const std::string& client = "mass = 600") {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "scene/scene.h"
 #include "tests/support/build_paths.h"
@@ -17,6 +17,8 @@
 
 namespace buoyancy {
 namespace {
+
+using ::testing::HasSubstr;
 
 constexpr int kMotions = 200;
 
@@ -258,7 +260,7 @@ TEST(LoadConventions, UnconvertedNumbersAreRefused) {
                                   "[body.added_mass]\nxDotU = -5.5", "[body.drag]\nxUabsU = -18.2"}) {
     const Expected<SceneDescription> scene = parse_scene(body + table, "a.toml", {});
     ASSERT_FALSE(scene) << table;
-    EXPECT_NE(scene.error().message().find("Negate"), std::string::npos) << scene.error().message();
+    EXPECT_THAT(scene.error().message(), HasSubstr("Negate"));
   }
 }
 

@@ -10,12 +10,10 @@
 namespace buoyancy {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 using Json = nlohmann::json;
-
-Scene prepared(const std::string& text) {
-  Expected<Scene> scene = Scene::prepare(parse(text).value());
-  return *std::move(scene);
-}
 
 constexpr SceneReportOptions kWithMotions{.motions = true};
 
@@ -33,7 +31,7 @@ TEST(MotionReport, FormatsDragAddedMassAndMotionsAsText) {
         " at an amplitude of 0.03", " m\n", "  roll          period ", " at an amplitude of 0.1 rad\n",
         "  pitch         period ", "  explicit step below ",
         "  mass ratio    added mass up to 1.705 times the mass: as an explicit force it diverges"}) {
-    EXPECT_NE(text.find(expected), std::string::npos) << "missing: " << expected << "\n" << text;
+    EXPECT_THAT(text, HasSubstr(expected));
   }
 }
 
@@ -42,7 +40,7 @@ TEST(MotionReport, WritesAFullMatrixRowByRow) {
       "[body.drag]\nlinear = [1, 0.1, 0, 0, 0, 0, 0.2, 2, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 4, 0, 0, 0, "
       "0, 0, 0, 5, 0, 0, 0, 0, 0, 0, 6]\n"));
   const std::string text = scene_report_text(scene);
-  EXPECT_NE(text.find("linear 36 numbers, diagonal [1, 2, 3, 4, 5, 6]\n"), std::string::npos) << text;
+  EXPECT_THAT(text, HasSubstr("linear 36 numbers, diagonal [1, 2, 3, 4, 5, 6]\n"));
   const Json report = parse_json(scene_report_json(scene));
   const Json& linear = report["bodies"][0]["drag"]["linear"];
   ASSERT_EQ(linear.size(), 36U);
@@ -55,19 +53,15 @@ TEST(MotionReport, FormatsWhatDoesNotApplyAsText) {
   const auto report = [](const std::string& client) {
     return scene_report_text(prepared(scene_with_crate(client)), kWithMotions);
   };
-  const std::string stone = report("[body.client]\ndensity = 2500\n");
-  EXPECT_NE(stone.find("  balance       sinks: heavier than the water that it displaces\n"),
-            std::string::npos);
-  EXPECT_EQ(stone.find("terminal"), std::string::npos) << "without drag there is none";
-  EXPECT_NE(stone.find("  heave         nothing restores it\n"), std::string::npos) << stone;
-  EXPECT_NE(report("[body.client]\ndensity = 1025\n").find("  balance       neutrally buoyant\n"),
-            std::string::npos);
-  EXPECT_NE(report("[body.client]\ncenter_of_mass = [0.1, 0, 0]\nmass = 100\ninertia = [9, 9, 9]\n")
-                .find(" m, and turns: buoyancy acts 0.1 m beside the centre of mass\n"),
-            std::string::npos);
-  EXPECT_NE(report("[body.drag]\nlinear = [1, 1, 1, 1, 1, 1]\n")
-                .find("  motions       unknown: no mass in [body.client]\n"),
-            std::string::npos);
+  EXPECT_THAT(report("[body.client]\ndensity = 2500\n"),
+              AllOf(HasSubstr("  balance       sinks: heavier than the water that it displaces\n"),
+                    HasSubstr("  heave         nothing restores it\n"), Not(HasSubstr("terminal"))))
+      << "without drag there is no terminal velocity";
+  EXPECT_THAT(report("[body.client]\ndensity = 1025\n"), HasSubstr("  balance       neutrally buoyant\n"));
+  EXPECT_THAT(report("[body.client]\ncenter_of_mass = [0.1, 0, 0]\nmass = 100\ninertia = [9, 9, 9]\n"),
+              HasSubstr(" m, and turns: buoyancy acts 0.1 m beside the centre of mass\n"));
+  EXPECT_THAT(report("[body.drag]\nlinear = [1, 1, 1, 1, 1, 1]\n"),
+              HasSubstr("  motions       unknown: no mass in [body.client]\n"));
 }
 
 TEST(MotionReport, WritesDragAddedMassAndMotionsAsJson) {

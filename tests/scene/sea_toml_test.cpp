@@ -1,7 +1,6 @@
 // The keys of [water] that describe the sea.
 #include <cmath>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <variant>
@@ -32,17 +31,7 @@ std::string waves_with(const std::string& keys) {
 }
 
 SeaDescription sea_of(const std::string& text) {
-  const Expected<SceneDescription> scene = parse(text);
-  if (!scene) throw std::runtime_error(scene.error().message());
-  return scene->sea;
-}
-
-// Returns the error of reading or preparing the scene, or "accepted".
-std::string prepare_error(const std::string& text) {
-  const Expected<SceneDescription> description = parse(text);
-  if (!description) return description.error().message();
-  const Expected<Scene> scene = Scene::prepare(*description);
-  return scene ? "accepted" : scene.error().message();
+  return parsed(text).sea;
 }
 
 TEST(SeaToml, WithoutKeysIsDeepWaterAtRest) {
@@ -154,11 +143,9 @@ TEST(SeaToml, NamesFileAndLineOfWrongComponentFiles) {
   const TempDir directory;
   directory.write("sea.csv", "amplitude,angular_frequency,direction,phase\n0.5,0.7,10,20\n-1,0.7,10,20\n");
   const auto error_with = [&](const std::string& file) {
-    const auto scene = read_scene_file(
-        directory.write("pool.toml", waves_with("type = \"components\"\nfile = \"" + file + "\"")));
-    return scene ? "accepted" : scene.error().message();
+    return preparation_error(waves_with("type = \"components\"\nfile = \"" + file + "\""), directory.path());
   };
-  const std::string start = directory.path("pool.toml") + ":3: [[water.waves]] number 1, ";
+  const std::string start = "pool.toml:3: [[water.waves]] number 1, ";
   EXPECT_THAT(error_with("sea.csv"),
               StartsWith(start + directory.path("sea.csv") + ":3, column 1: amplitude = '-1'; expected "));
   EXPECT_THAT(error_with("missing.csv"),
@@ -175,16 +162,8 @@ TEST(SeaToml, ReportsCompleteErrors) {
 
 TEST(SeaToml, RejectsWrongKeysOfTheWater) {
   const std::vector<std::pair<std::string, std::string>> wrong{
-      {"depth = 0", "depth = 0; expected a finite number above 0 (m), or inf for deep water"},
-      {"depth = -inf", "depth = -inf; expected a finite number above 0 (m), or inf"},
-      {"depth = nan", "depth = nan"},
-      {"depth = \"deep\"", "depth = \"deep\""},
-      {"depth = true", "depth = true"},
       {"wave_pressure = \"wheler\"", "expected one of wheeler, hydrostatic. The nearest is 'wheeler'."},
       {"wave_pressure = 1", "wave_pressure = 1"},
-      {"time_origin = 0.5", "time_origin = 0.5; expected a whole number (us)"},
-      {"ramp = -1", "ramp = -1; expected a number from 0 to 1e+09 (s)"},
-      {"ramp = inf", "ramp = inf"},
       {"wave = 3",
        "unknown key 'wave'; expected one of level, density, depth, wave_pressure, time_origin, "
        "ramp, waves, current. The nearest known key is 'waves'."},
@@ -222,31 +201,17 @@ TEST(SeaToml, RejectsWrongKeysOfWaveSystems) {
       {regular + "direction = \"north\"",
        "pool.toml:5: [[water.waves]] number 1: direction = \"north\"; expected a number from -1e+06 to 1e+06 "
        "(degrees)"},
-      {regular + "phase = nan", "phase = nan; expected a number from -1e+06"},
       {regular + "amplitude = 1", "unknown key 'amplitude'; expected one of type, height, period, direction"},
       {regular + "seed = 1", "unknown key 'seed'"},
       {"type = \"regular\"\nperiod = 8", "no key 'height'; expected a number from 0 to 10000 (m)"},
       {"type = \"regular\"\nheight = 8", "no key 'period'; expected a number from 0.01"},
-      {"type = \"regular\"\nheight = 1\nperiod = 0", "period = 0; expected a number from 0.01 to 1e+05 (s)"},
       {"type = \"regular\"\nheight = 1\nperio = 2", "The nearest known key is 'period'"},
       {"type = \"jonswap\"\npeak_period = 8", "no key 'significant_wave_height'"},
       {"type = \"jonswap\"\nsignificant_wave_height = 8", "no key 'peak_period'"},
-      {"type = \"jonswap\"\nsignificant_wave_height = -2\npeak_period = 8", "significant_wave_height = -2"},
-      {"type = \"jonswap\"\nsignificant_wave_height = 2\npeak_period = 0", "peak_period = 0; expected"},
-      {"type = \"jonswap\"\nsignificant_wave_height = 2\npeak_period = nan", "peak_period = nan; expected"},
-      {jonswap + "gamma = 100", "gamma = 100; expected a number from 1 to 10"},
-      {jonswap + "gamma = 0.5", "gamma = 0.5"},
-      {jonswap + "spreading = 0", "spreading = 0; expected a number above 0, at most 10000"},
-      {jonswap + "frequencies = 0", "frequencies = 0; expected a whole number from 1 to 4096"},
-      {jonswap + "frequencies = 4097", "frequencies = 4097"},
-      {jonswap + "frequencies = 40.0", "frequencies = 40.0"},
       {jonswap + "frequencies = 9223372036854775807", "frequencies = 9223372036854775807"},
-      {jonswap + "spreading = 10\ndirections = 0", "directions = 0; expected a whole number from 1 to 4096"},
       {jonswap + "directions = 5",
        "pool.toml:5: [[water.waves]] number 1: directions = 5; expected 1 without a spreading. Likely "
        "cause: "},
-      {jonswap + "cutoff = 1", "cutoff = 1; expected a number from 1.1 to 20 (peak frequencies)"},
-      {jonswap + "seed = -1", "seed = -1; expected a whole number of at least 0"},
       {jonswap + "hs = 1", "unknown key 'hs'"},
       {moskowitz + "gamma = 3.3",
        "gamma = 3.3; expected no gamma with type = \"pierson_moskowitz\", which is jonswap with gamma 1"},
@@ -260,8 +225,6 @@ TEST(SeaToml, RejectsWrongKeysOfWaveSystems) {
       {"type = \"components\"\ncomponents = [{ amplitude = 1, angular_frequency = 1 }, { amplitude = 1 }]",
        "pool.toml:3: [[water.waves]] number 1, components number 2: no key 'angular_frequency'"},
       {"type = \"components\"\ncomponents = [{ angular_frequency = 1 }]", "no key 'amplitude'"},
-      {"type = \"components\"\ncomponents = [{ amplitude = 1, angular_frequency = 0 }]",
-       "angular_frequency = 0; expected a number from 1e-05 to 1000 (rad/s)"},
       {"type = \"components\"\ncomponents = [{ amplitude = 1, angular_frequency = 1, period = 1 }]",
        "unknown key 'period'; expected one of amplitude, angular_frequency, direction, phase"},
   };
@@ -281,26 +244,33 @@ TEST(SeaToml, NumbersSystemsInErrors) {
 TEST(SeaToml, LocatesErrorsAboutTheWholeSea) {
   const std::string jonswap = "type = \"jonswap\"\nsignificant_wave_height = 2\npeak_period = 8\n";
   EXPECT_THAT(
-      prepare_error(
+      preparation_error(
           "\n" + water_with("level = 1\n[[water.waves]]\n" + jonswap + "spreading = 10\nfrequencies = 1000")),
       StartsWith("pool.toml:2: [water], the sea: number of wave components = 5000; expected at most 4096"));
-  EXPECT_THAT(prepare_error("\n\n" + waves_with(jonswap + "spreading = 10\nfrequencies = 1000")),
+  EXPECT_THAT(preparation_error("\n\n" + waves_with(jonswap + "spreading = 10\nfrequencies = 1000")),
               StartsWith("pool.toml:3: [water], the sea: number of wave components = 5000"))
       << "without a line [water]";
   EXPECT_THAT(
-      prepare_error(water_with("depth = 1.5\n[[water.waves]]\n" + jonswap)),
+      preparation_error(water_with("depth = 1.5\n[[water.waves]]\n" + jonswap)),
       StartsWith("pool.toml:1: [water], wave system 1: significant_wave_height = 2; expected less than "
                  "the water's depth, 1.5 m"));
-  EXPECT_THAT(prepare_error("[world]\ngravity = 0\n" + waves_with(jonswap)),
+  EXPECT_THAT(preparation_error("[world]\ngravity = 0\n" + waves_with(jonswap)),
               StartsWith("pool.toml:3: [water], the sea: gravity = 0; expected a number above 0"));
+}
+
+// All systems together have at most 4096 components.
+TEST(SeaToml, LimitsTheNumberOfComponents) {
   std::string components;
-  for (int i = 0; i < 5000; ++i) components += "{ amplitude = 0.01, angular_frequency = 1 },";
-  EXPECT_THAT(prepare_error(waves_with("type = \"components\"\ncomponents = [" + components + "]")),
-              HasSubstr("number of wave components = 5000"));
+  for (int i = 0; i < 4095; ++i) components += "{ amplitude = 0.001, angular_frequency = 1 },";
+  const std::string listed = "type = \"components\"\ncomponents = [" + components;
+  const std::string regular = "[[water.waves]]\ntype = \"regular\"\nheight = 0.01\nperiod = 8\n";
+  EXPECT_EQ(preparation_error(waves_with(listed + "]") + regular), "accepted");
+  EXPECT_THAT(preparation_error(waves_with(listed + "]") + regular + regular),
+              HasSubstr("number of wave components = 4097; expected at most 4096"));
 }
 
 TEST(SeaToml, AcceptsEveryTypeTogether) {
-  EXPECT_EQ(prepare_error(R"(
+  EXPECT_EQ(preparation_error(R"(
 [[body]]
 id = 1
 shape = { type = "box" }

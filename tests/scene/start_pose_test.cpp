@@ -1,5 +1,6 @@
 #include "scene/start_pose.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -7,12 +8,17 @@
 
 #include <gtest/gtest.h>
 
+#include "base/format.h"
+#include "geometry/rotation_between.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/scene/scene_texts.h"
 #include "tests/support/scene_of.h"
 
 namespace buoyancy {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
@@ -53,19 +59,46 @@ TEST(StartPose, TurnsAndSinksToTheEquilibrium) {
   EXPECT_LE((start.orientation * Vec3::UnitX() - Vec3::UnitX()).norm(), 1e-9);
 }
 
+// The heading of a body axis [rad]: of its projection on the horizontal plane.
+double heading_of(const Vec3& axis_W, const Vec3& up_W) {
+  const Vec3 ahead_W = rotation_between(Vec3::UnitZ(), up_W).conjugate() * axis_W;
+  return std::atan2(ahead_W.y(), ahead_W.x());
+}
+
+// Bars that float level, trimmed and on end, from every heading, pitch and heel, under several up directions:
+// the heading is that of x, or of y where x is nearly vertical before or after.
 TEST(StartPose, KeepsTheHeading) {
-  for (const double heading : {-170.0, -90.0, 0.0, 35.0, 120.0}) {
-    const Eigen::Quaterniond yaw(Eigen::AngleAxisd(heading * kDegree, Vec3::UnitZ()));
-    for (const double pitch : {-60.0, 0.0, 20.0}) {
-      const Eigen::Quaterniond q = yaw * Eigen::AngleAxisd(pitch * kDegree, Vec3::UnitY());
-      const std::string orientation = std::to_string(q.w()) + ", " + std::to_string(q.x()) + ", " +
-                                      std::to_string(q.y()) + ", " + std::to_string(q.z());
-      const DynamicsSpec start = start_of(bar("density = 100\norientation = [" + orientation + "]\n"));
-      const Vec3 ahead_W = start.orientation * Vec3::UnitX();
-      EXPECT_LE((ahead_W - yaw * Vec3::UnitX()).norm(), 1e-5) << heading << ", " << pitch;
-      EXPECT_LE((start.orientation.conjugate() * Vec3::UnitZ() - Vec3::UnitZ()).norm(), 1e-9);
+  std::array<int, 3> kept{};  // by axis
+  for (const std::string client : {"density = 100\n", "density = 300\ncenter_of_mass = [0.25, 0.05, -0.4]\n",
+                                   "density = 400\ncenter_of_mass = [-1.7, 0.02, 0]\n"}) {
+    for (const Vec3& up_W : {Vec3(0, 0, 1), Vec3(0.3, -0.8, 0.2), Vec3(-1, 0, 0.1)}) {
+      const std::string world =
+          "[world]\nup = [" + format_vector(up_W) + "]\n[water]\ndensity = 1000\nlevel = 3\n";
+      for (const double heading : {-170.0, -90.0, 35.0, 120.0}) {
+        for (const double pitch : {-80.0, -50.0, 0.0, 20.0}) {
+          const Eigen::Quaterniond before = rotation_between(Vec3::UnitZ(), up_W.normalized()) *
+                                            Eigen::AngleAxisd(heading * kDegree, Vec3::UnitZ()) *
+                                            Eigen::AngleAxisd(pitch * kDegree, Vec3::UnitY()) *
+                                            Eigen::AngleAxisd(0.2, Vec3::UnitX());
+          const std::string q = format_shortest(before.w()) + ", " + format_vector(before.vec(), 17);
+          const Scene scene = bar(client + "orientation = [" + q + "]\n", world);
+          const Eigen::Quaterniond after = start_of(scene).orientation;
+          const Vec3& up = scene.water().up_W;
+          const auto is_steep = [&](const Vec3& axis_B) {
+            return std::abs(up.dot(before * axis_B)) > 0.9 || std::abs(up.dot(after * axis_B)) > 0.9;
+          };
+          const int axis = !is_steep(Vec3::UnitX()) ? 0 : !is_steep(Vec3::UnitY()) ? 1 : 2;
+          ++kept[static_cast<std::size_t>(axis)];
+          const double turned =
+              heading_of(after * Vec3::Unit(axis), up) - heading_of(before * Vec3::Unit(axis), up);
+          EXPECT_NEAR(std::remainder(turned, 2.0 * std::numbers::pi), 0.0, 1e-9)
+              << client << up_W.transpose() << ": " << heading << ", " << pitch << ", axis " << axis;
+        }
+      }
     }
   }
+  EXPECT_GT(kept[0], 40);
+  EXPECT_GT(kept[1], 40);
 }
 
 TEST(StartPose, FollowsUpAndTheWaterLevel) {
@@ -96,29 +129,27 @@ TEST(StartPose, ExplainsWhereThereIsNone) {
       "body 1 (bar), start = \"equilibrium\": a mass of 8000 kg; expected less than the 4000 kg of water "
       "that it can displace. Likely cause: the body sinks. Reduce mass or density, or what is flooded and "
       "filled, or start at a pose: remove start.");
-  EXPECT_NE(start_error(bar("density = 1000\n")).find("neutrally buoyant"), std::string::npos);
+  EXPECT_THAT(start_error(bar("density = 1000\n")), HasSubstr("neutrally buoyant"));
   const TempDir directory;
-  const std::string mesh =
-      directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const std::string mesh = directory.write("open.obj", kOpenObj);
   const std::string open = "[[body]]\nid = 1\nmesh = \"" + mesh +
                            "\"\nopen = \"dry_boundary\"\n[body.client]\nstart = \"equilibrium\"\n";
-  EXPECT_NE(start_error(scene_of(open + "mass = 9\n")).find("without center_of_mass, inertia; expected"),
-            std::string::npos);
+  EXPECT_THAT(start_error(scene_of(open + "mass = 9\n")),
+              HasSubstr("without center_of_mass, inertia; expected"));
   const std::string heavy = open + "mass = 1e4\ncenter_of_mass = [0, 0, 0]\ninertia = [1, 1, 1]\n";
-  EXPECT_NE(start_error(scene_of(heavy)).find("takes in water"), std::string::npos);
+  EXPECT_THAT(start_error(scene_of(heavy)), HasSubstr("takes in water"));
 }
 
 TEST(StartPose, RefusesVelocitiesAndOtherWords) {
   for (const char* key : {"linear_velocity", "angular_velocity"}) {
-    const std::string error = parse_error(
-        scene_with_crate("[body.client]\nstart = \"equilibrium\"\n" + std::string(key) + " = [0, 0, 1]\n"));
-    EXPECT_NE(error.find(key), std::string::npos) << error;
-    EXPECT_NE(error.find("at rest"), std::string::npos) << error;
+    EXPECT_THAT(parse_error(scene_with_crate("[body.client]\nstart = \"equilibrium\"\n" + std::string(key) +
+                                             " = [0, 0, 1]\n")),
+                AllOf(HasSubstr(key), HasSubstr("at rest")));
   }
   EXPECT_EQ(parse_error(scene_with_crate("[body.client]\nstart = \"pose\"\nlinear_velocity = [0, 0, 1]\n")),
             "accepted");
-  EXPECT_NE(parse_error(scene_with_crate("[body.client]\nstart = \"floating\"\n")).find("equilibrium"),
-            std::string::npos);
+  EXPECT_THAT(parse_error(scene_with_crate("[body.client]\nstart = \"floating\"\n")),
+              HasSubstr("equilibrium"));
 }
 
 }  // namespace

@@ -15,30 +15,25 @@
 namespace buoyancy {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
 const std::string kBox = "shape = { type = \"box\", size = [1, 1, 1] }\n";
 
-std::string preparation_error(const std::string& text) {
-  const Expected<SceneDescription> description = parse(text);
-  if (!description) return description.error().message();
-  const Expected<Scene> scene = Scene::prepare(*description);
-  return scene ? "accepted" : scene.error().message();
-}
-
 std::vector<std::string> warnings_of(const std::string& text) {
-  std::vector<std::string> messages;
-  for (const Warning& warning : scene_warnings(scene_of(text))) messages.push_back(warning.message());
-  return messages;
+  return messages_of(scene_warnings(scene_of(text)));
 }
 
 TEST(Subdivision, ReadsEverySection) {
-  const auto scene = parse(
+  const SceneDescription scene = parsed(
       scene_with_crate("[[body.part]]\nname = \"float\"\n" + kBox + "position = [3, 0, 0]\n" +
                        "orientation = [2, 0, 0, 2]\n[[body.compartment]]\n" + kBox +
                        "permeability = 0.85\nflooded = 0.25\n[[body.tank]]\n" + kBox +
                        "fill = 0.5\n[[body.tank]]\nmesh = \"tank.stl\"\nscale = 0.001\nliquid_volume = 0.75\n"
                        "density = 850\n"));
-  ASSERT_TRUE(scene) << scene.error().message();
-  const BodyDescription& body = scene->bodies[0];
+  const BodyDescription& body = scene.bodies[0];
   ASSERT_EQ(body.parts.size(), 1U);
   EXPECT_EQ(body.parts[0].name, "float");
   EXPECT_EQ(body.parts[0].mesh.placement.position_B, Vec3(3, 0, 0));
@@ -64,14 +59,8 @@ TEST(Subdivision, ExplainsWhatIsWrong) {
       {"[[body.part]]\nmesh = \"a.stl\"\n" + kBox, "both 'mesh' and 'shape'"},
       {"[[body.part]]\n" + kBox + "permeability = 1\n", "pool.toml:6: body 7, part 0: unknown key"},
       {"[[body.compartment]]\n" + kBox + "permeabilty = 1\n", "nearest known key is 'permeability'"},
-      {"[[body.compartment]]\n" + kBox + "permeability = 0\n", "permeability = 0; expected"},
-      {"[[body.compartment]]\n" + kBox + "permeability = 1.2\n", "permeability = 1.2; expected"},
-      {"[[body.compartment]]\n" + kBox + "flooded = -0.1\n", "flooded = -0.1; expected"},
       {"[[body.tank]]\n" + kBox, "neither 'fill' nor 'liquid_volume'"},
       {"[[body.tank]]\n" + kBox + "fill = 0.5\nliquid_volume = 1\n", "both 'fill' and 'liquid_volume'"},
-      {"[[body.tank]]\n" + kBox + "fill = 1.5\n", "fill = 1.5; expected"},
-      {"[[body.tank]]\n" + kBox + "fill = nan\n", "fill = nan; expected"},
-      {"[[body.tank]]\n" + kBox + "fill = 0.5\ndensity = -1\n", "density = -1; expected"},
       {"[[body.tank]]\n" + kBox + "fill = 0.5\norientation = [0, 0, 0, 0]\n",
        "a quaternion (w, x, y, z), not"},
       {"[[body.tank]]\nshape = { type = \"box\", sizes = [1, 1, 1] }\nfill = 0.5\n",
@@ -82,34 +71,28 @@ TEST(Subdivision, ExplainsWhatIsWrong) {
       {"[[body.tank]]\nmesh = \"no_such_tank.stl\"\nfill = 0.5\n", "no_such_tank.stl"},
   };
   for (const auto& [text, expected] : wrong) {
-    const std::string message = preparation_error(scene_with_crate(text));
-    EXPECT_NE(message.find(expected), std::string::npos) << message << "\nexpected to contain: " << expected;
+    EXPECT_THAT(preparation_error(scene_with_crate(text)), HasSubstr(expected));
   }
 }
 
 TEST(Subdivision, RejectsOpenMeshes) {
   const TempDir directory;
-  const std::string open =
-      directory.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n");
+  const std::string open = directory.write("open.obj", kOpenObj);
   for (const std::string section : {"part", "compartment", "tank"}) {
     const std::string fill = section == "tank" ? "fill = 0.5\n" : "";
     const std::string message =
         preparation_error(scene_with_crate("[[body." + section + "]]\nmesh = \"" + open + "\"\n" + fill));
-    EXPECT_NE(message.find("body 7, " + section + " '" + section + " 0', "), std::string::npos) << message;
-    EXPECT_NE(message.find("open"), std::string::npos) << message;
-    EXPECT_EQ(message.find("dry_boundary"), std::string::npos) << message;
+    EXPECT_THAT(message, AllOf(HasSubstr("body 7, " + section + " '" + section + " 0', "), HasSubstr("open"),
+                               Not(HasSubstr("dry_boundary"))));
   }
-  const std::string hull =
-      preparation_error("[[body]]\nid = 1\nmesh = \"" + open +
-                        "\"\nopen = \"dry_boundary\"\n[[body.tank]]\nfill = 0.5\n" + kBox);
-  EXPECT_NE(hull.find("an open mesh; expected a closed mesh"), std::string::npos) << hull;
+  EXPECT_THAT(preparation_error("[[body]]\nid = 1\nmesh = \"" + open +
+                                "\"\nopen = \"dry_boundary\"\n[[body.tank]]\nfill = 0.5\n" + kBox),
+              HasSubstr("an open mesh; expected a closed mesh"));
 }
 
 TEST(Subdivision, RejectsAScaleWithoutAMesh) {
-  const std::string message = preparation_error("[[body]]\nid = 7\nscale = 2\n[[body.part]]\n" + kBox);
-  EXPECT_NE(message.find("pool.toml:3: body 7: scale = 2; expected a scale only with a mesh file"),
-            std::string::npos)
-      << message;
+  EXPECT_THAT(parse_error("[[body]]\nid = 7\nscale = 2\n[[body.part]]\n" + kBox),
+              HasSubstr("pool.toml:3: body 7: scale = 2; expected a scale only with a mesh file"));
 }
 
 TEST(Subdivision, SharesMeshesOfEqualBodies) {
@@ -133,18 +116,11 @@ TEST(Subdivision, OfABodyWithoutSectionsIsAbsent) {
 
 // One part inside another is no cavity: parts are added up as they are.
 TEST(Subdivision, AddsPartsInsideOthers) {
-  const Scene scene = scene_of(
-      "[[body]]\nid = 1\n[[body.part]]\nshape = { type = \"box\", size = [3, 3, 3] }\n"
-      "[[body.part]]\n" +
-      kBox);
-  EXPECT_NEAR(scene.bodies()[0].prepared_mesh->mesh.volume, 28.0, 1e-12);
-  const std::vector<std::string> warnings = warnings_of(
-      "[[body]]\nid = 1\n[[body.part]]\nshape = { type = \"box\", size = [3, 3, 3] }\n"
-      "[[body.part]]\n" +
-      kBox);
-  ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("parts 'part 0' and 'part 1': overlap by 1 m^3 (100 %)"), std::string::npos)
-      << warnings[0];
+  const std::string text =
+      "[[body]]\nid = 1\n[[body.part]]\nshape = { type = \"box\", size = [3, 3, 3] }\n[[body.part]]\n" + kBox;
+  EXPECT_NEAR(scene_of(text).bodies()[0].prepared_mesh->mesh.volume, 28.0, 1e-12);
+  EXPECT_THAT(warnings_of(text),
+              ElementsAre(HasSubstr("parts 'part 0' and 'part 1': overlap by 1 m^3 (100 %)")));
 }
 
 // A mesh far from its own origin is turned and moved back to where it was: nothing is lost but the last bit.
@@ -157,7 +133,6 @@ TEST(Subdivision, PlacesMeshesThatLieFarFromTheirOrigin) {
   }
   obj += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
   const std::string mesh = directory.write("far.obj", obj);
-  // 1192.02).
   const Eigen::Quaterniond q = Eigen::Quaterniond(1, 2, -2, 4).normalized();
   const Vec3 center = q * Vec3(1000.5, 2000.5, -499.5);
   const Scene scene =
@@ -178,17 +153,13 @@ TEST(Subdivision, WarnsAboutSpacesThatStickOutOrOverlap) {
                                  "shape = { type = \"box\", size = [1, 2, 1] }\nposition = [0.5, 0, 0]\n")
                   .empty())
       << "they touch the hull and each other";
-  const std::vector<std::string> warnings =
+  EXPECT_THAT(
       warnings_of(hull +
                   "[[body.compartment]]\nname = \"bow\"\nshape = { type = \"box\", size = [1, 2, 1] }\n"
                   "position = [1.75, 0, 0]\n[[body.tank]]\nfill = 0.5\n"
-                  "shape = { type = \"box\", size = [1, 1, 1] }\nposition = [1, 0, 0]\n");
-  ASSERT_EQ(warnings.size(), 2U);
-  EXPECT_NE(warnings[0].find("compartment 'bow': 0.5 m^3 (25 %) outside the hull"), std::string::npos)
-      << warnings[0];
-  EXPECT_NE(warnings[1].find("compartment 'bow' and tank 'tank 0': overlap by 0.25 m^3 (25 %)"),
-            std::string::npos)
-      << warnings[1];
+                  "shape = { type = \"box\", size = [1, 1, 1] }\nposition = [1, 0, 0]\n"),
+      ElementsAre(HasSubstr("compartment 'bow': 0.5 m^3 (25 %) outside the hull"),
+                  HasSubstr("compartment 'bow' and tank 'tank 0': overlap by 0.25 m^3 (25 %)")));
 }
 
 TEST(Subdivision, FloatsWithItsCompartmentsAndTanks) {

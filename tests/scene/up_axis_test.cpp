@@ -5,13 +5,15 @@
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "scene/scene_report.h"
 #include "tests/geometry/mesh_files.h"
 
 namespace buoyancy {
 namespace {
+
+using ::testing::HasSubstr;
 
 class UpAxis : public testing::Test {
  protected:
@@ -177,9 +179,8 @@ TEST(PolygonReport, ScalesWithTheMesh) {
   EXPECT_NEAR(one.split_volume, 0.1 / 6.0, 1e-9);
   EXPECT_NEAR(ten.split_volume, 1000.0 * one.split_volume, 1e-9);
   EXPECT_NEAR(ten.largest_distance, 10.0 * one.largest_distance, 1e-12);
-  EXPECT_NE(
-      to_text(report_of("10")).find("1 of four or more corners, split into triangles; 1 not planar, up to "),
-      std::string::npos);
+  EXPECT_THAT(to_text(report_of("10")),
+              HasSubstr("1 of four or more corners, split into triangles; 1 not planar, up to "));
   EXPECT_EQ(report_of("1").vertices_stored, 4 + 4 * 3);
 }
 
