@@ -1,9 +1,11 @@
 #include "transport/udpm_url.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace buoyancy {
 namespace {
+
+using ::testing::HasSubstr;
 
 TEST(UdpmUrl, ParsesAddressPortAndOptions) {
   const auto url = parse_udpm_url("udpm://239.1.2.3:7700?ttl=1&recv_buf_size=65536");
@@ -41,8 +43,7 @@ TEST(UdpmUrl, RejectsUrlsThatLiblcmMisreads) {
         "udpm://239.255.76.67:7667?recv_buf_size=0", "udpm://239.255.76.67:7667?recv_buf_size=4e6"}) {
     const auto url = parse_udpm_url(text);
     ASSERT_FALSE(url) << text;
-    EXPECT_NE(url.error().message().find("LCM URL '" + std::string(text) + "'"), std::string::npos)
-        << url.error().message();
+    EXPECT_THAT(url.error().message(), HasSubstr("LCM URL '" + std::string(text) + "'"));
   }
 }
 
