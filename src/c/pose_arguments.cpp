@@ -14,7 +14,8 @@ bool is_default(const Vec3& up_W) {
 }
 
 // A sea has water of its own: an argument that contradicts it would have no effect.
-void check_contradictions(ArgumentChecks& checks, const Water& given, const Water& sea) {
+void check_contradictions(ArgumentChecks& checks, const Water& given, const QuerySea& of) {
+  const Water& sea = of.water();
   const Water defaults;
   const auto contradicts = [&](const char* name, double value, double of_sea, double by_default) {
     if (value == of_sea || value == by_default) return;
@@ -25,7 +26,7 @@ void check_contradictions(ArgumentChecks& checks, const Water& given, const Wate
   contradicts("water->level", given.level, sea.level, defaults.level);
   contradicts("water->density", given.density, sea.density, defaults.density);
   contradicts("water->gravity", given.gravity, sea.gravity, defaults.gravity);
-  if (given.up_W != sea.up_W && !is_default(given.up_W)) {
+  if (!of.has_up(given.up_W) && !is_default(given.up_W)) {
     checks.fail("water->up", format_vector(given.up_W),
                 format_vector(sea.up_W) + " as in the sea, or the default", "",
                 "Set it in the text of the sea");
@@ -75,7 +76,7 @@ QueryWater check_water(ArgumentChecks& checks, const buoyancy_water* given) {
   if (given->sea == nullptr) return result;
   const buoyancy_sea* const sea = checks.handle("water->sea", given->sea);
   if (sea == nullptr) return result;
-  check_contradictions(checks, water, sea->sea.water());
+  check_contradictions(checks, water, sea->sea);
   return water_of(sea->sea);
 }
 

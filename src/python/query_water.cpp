@@ -58,7 +58,7 @@ QueryWater to_query_water(const WaterObjects& objects, PyObject* sea) {
   check("level", water.level, of_sea.water().level, defaults.level);
   check("density", water.density, of_sea.water().density, defaults.density);
   check("gravity", water.gravity, of_sea.water().gravity, defaults.gravity);
-  if (water.up_W != of_sea.water().up_W && water.up_W != defaults.up_W) {
+  if (!of_sea.has_up(water.up_W) && water.up_W != defaults.up_W) {
     throw py::value_error("up = " + format_vector(water.up_W) + " but the sea's is " +
                           format_vector(of_sea.water().up_W) +
                           "; expected one of them: leave up out, or give it to "

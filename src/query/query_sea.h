@@ -30,6 +30,9 @@ class QuerySea {
   const std::shared_ptr<const PreparedSea>& waves() const { return waves_; }
   const Vec3& current_W() const { return current_W_; }  // [m/s], which carries the waves
   HorizontalAxes axes() const { return horizontal_axes(water_.up_W); }
+  // Whether a unit vector is up here. It may differ by rounding: up normalised again may have other last
+  // bits.
+  bool has_up(const Vec3& up_W) const { return (up_W - water_.up_W).cwiseAbs().maxCoeff() <= 1e-15; }
 
  private:
   QuerySea(const Water& water, std::shared_ptr<const PreparedSea> waves, const Vec3& current_W)

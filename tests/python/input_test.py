@@ -69,6 +69,9 @@ class RefusesBadInput(TestCase):
         self.refused(ValueError, "up = .* but the sea's is", query, p, q, up=(0, 1, 0), sea=sea)
         self.refused(buoyancy.InputError, "exact", query, p, q, method="exact", sea=sea)
         query(p, q, level=2.0, sea=sea)
+        for x in np.linspace(0, 5, 50):  # what a sea states itself is no contradiction
+            tilted = buoyancy.Sea(up=(x, 0.7 - 0.3 * x, 1))
+            query(p, q, up=tilted.up, sea=tilted)
 
     def test_limits(self):
         query, p, q = self.mesh.query, self.position, self.quaternion
