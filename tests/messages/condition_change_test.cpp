@@ -16,12 +16,8 @@ constexpr std::size_t kSize = 8 + 8 + 3 * 4 + 2 * 8;
 
 ConditionChange random_change() {
   ConditionChange change;
-  change.utime = random_integer<std::int64_t>();
-  change.body_id = random_integer<std::int32_t>();
-  change.kind = static_cast<ConditionKind>(random_integer<std::int32_t>());
-  change.index = random_integer<std::int32_t>();
-  change.flooded = random_double();
-  change.liquid_volume = random_double();
+  Randomiser randomiser;
+  visit_fields(change, randomiser);
   return change;
 }
 

@@ -37,22 +37,16 @@ void expect_percentiles(const std::vector<double>& durations) {
   EXPECT_EQ(histogram.count(), static_cast<std::int64_t>(durations.size()));
 }
 
-TEST(LatencyHistogram, ReturnsZerosWhenEmpty) {
-  const LatencyPercentiles percentiles = LatencyHistogram{}.percentiles();
-  EXPECT_EQ(percentiles.p50, 0.0);
-  EXPECT_EQ(percentiles.p99, 0.0);
-  EXPECT_EQ(percentiles.p999, 0.0);
-  EXPECT_EQ(percentiles.max, 0.0);
-}
-
-TEST(LatencyHistogram, IsExactForSingleDuration) {
+TEST(LatencyHistogram, IsExactForNoneAndForOneDuration) {
   LatencyHistogram histogram;
-  histogram.add(1.7e-5);
-  const LatencyPercentiles percentiles = histogram.percentiles();
-  EXPECT_EQ(percentiles.p50, 1.7e-5);
-  EXPECT_EQ(percentiles.p99, 1.7e-5);
-  EXPECT_EQ(percentiles.p999, 1.7e-5);
-  EXPECT_EQ(percentiles.max, 1.7e-5);
+  for (const double duration : {0.0, 1.7e-5}) {
+    if (duration > 0.0) histogram.add(duration);
+    const LatencyPercentiles percentiles = histogram.percentiles();
+    EXPECT_EQ(percentiles.p50, duration);
+    EXPECT_EQ(percentiles.p99, duration);
+    EXPECT_EQ(percentiles.p999, duration);
+    EXPECT_EQ(percentiles.max, duration);
+  }
 }
 
 TEST(LatencyHistogram, MatchesUniformDistribution) {
