@@ -13,12 +13,15 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "base/format.h"
 #include "geometry/shapes.h"
 #include "service/hydrostatics/hydrostatics_options.h"
 #include "service/hydrostatics/hydrostatics_page.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
+#include "tests/support/contains.h"
+#include "tests/support/csv.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 
@@ -56,34 +59,22 @@ shape = { type = "box", size = [80, 20, 12], segments = [2, 2, 2] }
   TempDir dir_;
 };
 
-std::vector<std::vector<double>> rows_of(const std::string& csv, std::string& header) {
-  std::istringstream lines(csv);
-  std::getline(lines, header);
-  std::vector<std::vector<double>> rows;
-  for (std::string line; std::getline(lines, line);) {
-    std::vector<double>& row = rows.emplace_back();
-    std::istringstream fields(line);
-    for (std::string field; std::getline(fields, field, ',');) row.push_back(std::stod(field));
-  }
-  return rows;
-}
-
 TEST_F(HydrostaticsProgram, WritesRightingArmsAsCsv) {
   const ProgramRun result =
       run({"gz", "--scene", ship(), "--heel", "-30:90:15", "--csv", dir_.path("gz.csv")});
   ASSERT_EQ(result.exit_code, 0) << result.error;
-  std::string header;
-  const auto rows = rows_of(read_file(dir_.path("gz.csv")), header);
-  EXPECT_EQ(header, "heel,trim,draft,gz,kn,area");
-  ASSERT_EQ(rows.size(), 9U);
-  EXPECT_NEAR(rows[4][0], 30.0, 1e-12);
-  EXPECT_NEAR(rows[4][3], 0.740740741, 1e-9);
-  EXPECT_NEAR(rows[4][4], 0.740740741 + 8.0 * std::sin(30 * kDegree), 1e-9);
-  EXPECT_NEAR(rows[4][5], 0.132002392797, 1e-12);
-  EXPECT_NEAR(rows[0][3], -rows[4][3], 1e-12);
-  EXPECT_NEAR(rows[8][3], -2.0, 1e-9);
-  EXPECT_NE(result.output.find("largest arm to starboard"), std::string::npos);
-  EXPECT_NE(result.output.find("not a class approval"), std::string::npos);
+  const auto rows = csv_rows(read_file(dir_.path("gz.csv")));
+  EXPECT_EQ(rows.at(0), (CsvRow{"heel", "trim", "draft", "gz", "kn", "area"}));
+  ASSERT_EQ(rows.size(), 10U);
+  const std::vector<double> at_thirty = numbers_of(rows[5]);
+  EXPECT_NEAR(at_thirty[0], 30.0, 1e-12);
+  EXPECT_NEAR(at_thirty[3], 0.740740741, 1e-9);
+  EXPECT_NEAR(at_thirty[4], 0.740740741 + 8.0 * std::sin(30 * kDegree), 1e-9);
+  EXPECT_NEAR(at_thirty[5], 0.132002392797, 1e-12);
+  EXPECT_NEAR(std::stod(rows[1][3]), -at_thirty[3], 1e-12);
+  EXPECT_NEAR(std::stod(rows[9][3]), -2.0, 1e-9);
+  EXPECT_TRUE(contains(result.output, "largest arm to starboard"));
+  EXPECT_TRUE(contains(result.output, "not a class approval"));
 }
 
 TEST_F(HydrostaticsProgram, PrintsRightingArmsAsJson) {
@@ -133,13 +124,13 @@ TEST_F(HydrostaticsProgram, WritesTableAsCsv) {
   const ProgramRun result = run(
       {"table", "--scene", ship(), "--draft", "1:6:2.5", "--trim", "-1:1:1", "--csv", dir_.path("t.csv")});
   ASSERT_EQ(result.exit_code, 0) << result.error;
-  std::string header;
-  const auto rows = rows_of(read_file(dir_.path("t.csv")), header);
-  EXPECT_TRUE(header.starts_with(
+  const std::string csv = read_file(dir_.path("t.csv"));
+  const auto rows = csv_rows(csv);
+  EXPECT_TRUE(csv.starts_with(
       "draft,trim,displacement_volume,displacement_mass,lcb,tcb,kb,lcf,waterplane_area,bm_t,bm_l,km_t,km_l"))
-      << header;
-  ASSERT_EQ(rows.size(), 9U);
-  const std::vector<double>& design = rows[5];
+      << csv;
+  ASSERT_EQ(rows.size(), 10U);
+  const std::vector<double> design = numbers_of(rows[6]);
   EXPECT_EQ(design[0], 6.0);
   EXPECT_EQ(design[1], 0.0);
   EXPECT_NEAR(design[2], 9600.0, 1e-9);
@@ -189,7 +180,7 @@ TEST_F(HydrostaticsProgram, TakesAMeshWithAMass) {
   EXPECT_NEAR(first.at("draft").get<double>(), 0.5, 1e-12);
   const ProgramRun without_mass = run({"equilibrium", "--mesh", mesh});
   EXPECT_EQ(without_mass.exit_code, 2);
-  EXPECT_NE(without_mass.error.find("--mass"), std::string::npos) << without_mass.error;
+  EXPECT_TRUE(contains(without_mass.error, "--mass"));
 }
 
 // [m rad], under the curve of the wall-sided ship from 0 to a heel.
@@ -219,10 +210,8 @@ TEST_F(HydrostaticsProgram, ReportsDeckEdgeAndDownflooding) {
   EXPECT_EQ(criteria.at(2).at("met"), false);
 
   const ProgramRun text = run({"gz", "--scene", file, "--heel", "0", "--deck-edge", "0,-10,6"});
-  EXPECT_NE(text.output.find("deck edge under water to starboard: 30.963757 degrees, point 1\n"),
-            std::string::npos)
-      << text.output;
-  EXPECT_EQ(text.output.find("downflooding"), std::string::npos);
+  EXPECT_TRUE(contains(text.output, "deck edge under water to starboard: 30.963757 degrees, point 1\n"));
+  EXPECT_FALSE(contains(text.output, "downflooding"));
   const auto without = nlohmann::json::parse(run({"gz", "--scene", file, "--json", "--heel", "0"}).output);
   EXPECT_TRUE(without.at("deck_edge").is_null());
   EXPECT_EQ(without.at("criteria").at("values").at(1).at("name"), "area from 0 to 40 degrees");
@@ -279,7 +268,7 @@ TEST_F(HydrostaticsProgram, TakesWaterScaleAndOpenPolicyWithAMesh) {
                                         "--density",        "1000",    "--gravity", "1.62"};
   const ProgramRun refused = run(closed);
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.error.find("dry_boundary"), std::string::npos) << refused.error;
+  EXPECT_TRUE(contains(refused.error, "dry_boundary"));
   std::vector<std::string> open = closed;
   open.insert(open.end(), {"--open", "dry_boundary"});
   const ProgramRun result = run(open);
@@ -295,33 +284,89 @@ TEST_F(HydrostaticsProgram, TakesWaterScaleAndOpenPolicyWithAMesh) {
   const ProgramRun capsized = run(open);
   EXPECT_EQ(capsized.exit_code, 1);
   // Heeled by 45 degrees it displaces a prism, up to its edge: 4 times 1 x 1 / 2 m^3.
-  EXPECT_NE(capsized.error.find("no balance at a heel of 60 degrees"), std::string::npos) << capsized.error;
-  EXPECT_NE(capsized.error.find("takes in water"), std::string::npos) << capsized.error;
+  EXPECT_TRUE(contains(capsized.error, "no balance at a heel of 60 degrees"));
+  EXPECT_TRUE(contains(capsized.error, "takes in water"));
 }
 
-// A box of 4 x 1 x 2 after its scale: its waterplane is 4 x 2 with y up, and 4 x 1 with z up.
-TEST_F(HydrostaticsProgram, TakesTheAxisThatIsUpInTheMesh) {
-  const std::string mesh = dir_.write("box.obj",
-                                      "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n"
-                                      "v 0 0 1\nv 2 0 1\nv 2 1 1\nv 0 1 1\n"
-                                      "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-  const auto table = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> arguments{
-        "table",   "--mesh", mesh,     "--mass",    "1000", "--center-of-mass", "2,0,0",
-        "--draft", "0.25",   "--json", "--density", "1000", "--scale",          "2,1,2"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const ProgramRun result = run(arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_EQ(result.error, "");
-    return result.output;
+// A barge whose middle is beside the origin of its mesh, with its mass to port, whichever axes of the mesh
+// are its own: every result is that of closed forms.
+TEST_F(HydrostaticsProgram, AgreesWithClosedFormsInAnyFrameOfTheMesh) {
+  constexpr double kToPort = 0.15;  // [m], of the mass from the middle
+  constexpr double kBm = 400.0 / 72.0;
+  struct Frame {
+    const char* forward;
+    const char* up;
+    Vec3 forward_B, up_B;
+    double scale;
   };
-  const auto volume = [](const std::string& output) {
-    return nlohmann::json::parse(output).at("rows").at(0).at("displacement_volume").get<double>();
-  };
-  const std::string y_up = table({"--up", "y"});
-  EXPECT_NEAR(volume(y_up), 0.25 * 4.0 * 2.0, 1e-12);
-  EXPECT_EQ(table({"--up", "+y"}), y_up);
-  EXPECT_NEAR(volume(table({})), 0.25 * 4.0 * 1.0, 1e-12);
+  for (const auto& [forward, up, forward_B, up_B, scale] :
+       {Frame{"x", "z", Vec3::UnitX(), Vec3::UnitZ(), 1.0},
+        Frame{"-y", "+z", -Vec3::UnitY(), Vec3::UnitZ(), 0.5},
+        Frame{"z", "y", Vec3::UnitZ(), Vec3::UnitY(), 0.001},
+        Frame{"-x", "-y", -Vec3::UnitX(), -Vec3::UnitY(), 1024.0}}) {
+    SCOPED_TRACE(std::string(forward) + " " + up);
+    const auto at = [&, port_B = Vec3(up_B.cross(forward_B))](double ahead, double to_port, double above) {
+      return Vec3((7.0 + ahead) * forward_B + (to_port - 3.0) * port_B + (4.0 + above) * up_B);
+    };
+    const auto text = [&](double ahead, double to_port, double above) {
+      const Vec3 point_B = at(ahead, to_port, above);
+      return format_shortest(point_B.x()) + "," + format_shortest(point_B.y()) + "," +
+             format_shortest(point_B.z());
+    };
+    std::string obj;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 v = at((corner & 1) != 0 ? 40.0 : -40.0, (corner & 2) != 0 ? 10.0 : -10.0,
+                        (corner & 4) != 0 ? 6.0 : -6.0) /
+                     scale;
+      obj +=
+          "v " + format_shortest(v.x()) + " " + format_shortest(v.y()) + " " + format_shortest(v.z()) + "\n";
+    }
+    obj += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    const auto json = [&](std::vector<std::string> arguments) {
+      for (const std::string& one :
+           {std::string("--mesh"), dir_.write("barge.obj", obj), std::string("--mass=9840000"),
+            "--center-of-mass=" + text(0.0, kToPort, 2.0), std::string("--forward=") + forward,
+            std::string("--up=") + up, "--scale=" + format_shortest(scale), std::string("--json")}) {
+        arguments.push_back(one);
+      }
+      const ProgramRun result = run(arguments);
+      EXPECT_EQ(result.exit_code, 0) << result.error;
+      return nlohmann::json::parse(result.output);
+    };
+    const auto arms = json({"gz", "--heel", "-20:30:10", "--deck-edge=" + text(0, 10, 6),
+                            "--deck-edge=" + text(5, -10, 4), "--downflooding=" + text(-2, -10, 5.5)});
+    for (const auto& point : arms.at("points")) {
+      const double heel = point.at("heel").get<double>() * kDegree;
+      const double t = std::tan(heel);
+      EXPECT_NEAR(point.at("gz").get<double>(),
+                  (3.0 + kBm - 8.0 + 0.5 * kBm * t * t) * std::sin(heel) + kToPort * std::cos(heel), 1e-7)
+          << heel;
+      EXPECT_NEAR(point.at("area").get<double>(), wall_sided_area(heel) + kToPort * std::sin(heel), 1e-7);
+      EXPECT_NEAR(point.at("trim").get<double>(), 0.0, 1e-6);
+      EXPECT_NEAR(point.at("draft").get<double>(), 6.0 * std::cos(heel) + 10.0 * std::abs(std::sin(heel)),
+                  1e-7);
+    }
+    EXPECT_NEAR(arms.at("deck_edge").at("starboard").at("heel").get<double>(), std::atan(0.4) / kDegree,
+                1e-7);
+    EXPECT_EQ(arms.at("deck_edge").at("starboard").at("point"), 1);
+    EXPECT_NEAR(arms.at("deck_edge").at("port").at("heel").get<double>(), -std::atan(0.6) / kDegree, 1e-7);
+    EXPECT_EQ(arms.at("deck_edge").at("port").at("point"), 0);
+    const double flooding = std::atan(0.55);  // 28.8 degrees: short of 30
+    EXPECT_NEAR(arms.at("downflooding").at("starboard").at("heel").get<double>(), flooding / kDegree, 1e-7);
+    const double area = wall_sided_area(flooding) + kToPort * std::sin(flooding);
+    const std::array<double, 6> criteria{area, area, 0.0, 0.0, flooding / kDegree, 3.0 + kBm - 8.0};
+    for (std::size_t i = 0; i < criteria.size(); ++i) {
+      EXPECT_NEAR(arms.at("criteria").at("values").at(i).at("value").get<double>(), criteria[i], 1e-5) << i;
+    }
+    // With the bow up, what is displaced lies abaft of midship.
+    const double trim = std::tan(1.5 * kDegree);
+    const auto row = json({"table", "--draft", "2.5", "--trim", "1.5"}).at("rows").at(0);
+    EXPECT_NEAR(row.at("displacement_volume").get<double>(), 80.0 * 20.0 * 2.5, 1e-6);
+    EXPECT_NEAR(row.at("lcb").get<double>(), -6400.0 / 12.0 * trim / 2.5, 1e-6);
+    EXPECT_NEAR(row.at("tcb").get<double>(), -3.0, 1e-9);
+    EXPECT_NEAR(row.at("kb").get<double>(), 1.25 + 6400.0 / 24.0 * trim * trim / 2.5, 1e-6);
+    EXPECT_NEAR(row.at("lcf").get<double>(), 0.0, 1e-6);
+  }
 }
 
 TEST_F(HydrostaticsProgram, WarnsOfAMeshWhoseUpAxisIsNotTheShips) {
@@ -335,16 +380,14 @@ TEST_F(HydrostaticsProgram, WarnsOfAMeshWhoseUpAxisIsNotTheShips) {
     return result.error;
   };
   const std::string warning = error_with({});
-  EXPECT_NE(warning.find(": warning: "), std::string::npos) << warning;
-  EXPECT_NE(warning.find("expected z of the body, which is the ship's upward axis"), std::string::npos)
-      << warning;
-  EXPECT_NE(warning.find("Pass --up y; in a scene file, orientation = [0.70710678"), std::string::npos)
-      << warning;
+  EXPECT_TRUE(contains(warning, ": warning: "));
+  EXPECT_TRUE(contains(warning, "expected z of the body, which is the ship's upward axis"));
+  EXPECT_TRUE(contains(warning, "Pass --up y; in a scene file, orientation = [0.70710678"));
   EXPECT_EQ(error_with({"--up", "y"}), "");
   EXPECT_EQ(error_with({"--up=+y"}), "");
-  EXPECT_NE(error_with({"--up=-y"}).find("expected -y of the body"), std::string::npos);
+  EXPECT_TRUE(contains(error_with({"--up=-y"}), "expected -y of the body"));
   // The axis is that of the mesh as it is scaled.
-  EXPECT_NE(error_with({"--scale=1,-1,1"}).find("Pass --up=-y;"), std::string::npos);
+  EXPECT_TRUE(contains(error_with({"--scale=1,-1,1"}), "Pass --up=-y;"));
   EXPECT_EQ(error_with({"--scale=1,-1,1", "--up=-y"}), "");
 }
 
@@ -355,7 +398,7 @@ TEST_F(HydrostaticsProgram, SaysThatABodySinks) {
   EXPECT_EQ(nlohmann::json::parse(result.output).at("outcome"), "sinks");
   const ProgramRun arms = run({"gz", "--scene", heavy});
   EXPECT_EQ(arms.exit_code, 1);
-  EXPECT_NE(arms.error.find("sinks"), std::string::npos) << arms.error;
+  EXPECT_TRUE(contains(arms.error, "sinks"));
 }
 
 TEST_F(HydrostaticsProgram, WritesAPageBesideJsonAndCsv) {
@@ -364,12 +407,11 @@ TEST_F(HydrostaticsProgram, WritesAPageBesideJsonAndCsv) {
       {"gz", "--scene", ship(), "--heel", "0:40:10", "--json", "--csv", dir_.path("gz.csv"), "--html", page});
   ASSERT_EQ(result.exit_code, 0) << result.error;
   EXPECT_EQ(nlohmann::json::parse(result.output).at("points").size(), 5U);
-  std::string header;
-  EXPECT_EQ(rows_of(read_file(dir_.path("gz.csv")), header).size(), 5U);
+  EXPECT_EQ(csv_rows(read_file(dir_.path("gz.csv"))).size(), 6U);
   const std::string html = read_file(page);
   EXPECT_TRUE(html.starts_with("<!DOCTYPE html>"));
-  EXPECT_NE(html.find("WebGLRenderer"), std::string::npos);
-  EXPECT_EQ(html.find("<!-- data -->"), std::string::npos);
+  EXPECT_TRUE(contains(html, "WebGLRenderer"));
+  EXPECT_FALSE(contains(html, "<!-- data -->"));
   EXPECT_TRUE(html.ends_with("</html>\n"));
 }
 
@@ -377,15 +419,15 @@ TEST_F(HydrostaticsProgram, SaysWhyAPageCannotBeWritten) {
   const std::string file = ship();
   const ProgramRun absent = run({"equilibrium", "--scene", file, "--html", dir_.path("no/such/page.html")});
   EXPECT_EQ(absent.exit_code, 1);
-  EXPECT_NE(absent.error.find("No such file or directory"), std::string::npos) << absent.error;
+  EXPECT_TRUE(contains(absent.error, "No such file or directory"));
   const ProgramRun full = run({"equilibrium", "--scene", file, "--html", "/dev/full"});
   EXPECT_EQ(full.exit_code, 1);
-  EXPECT_NE(full.error.find("No space left on device"), std::string::npos) << full.error;
+  EXPECT_TRUE(contains(full.error, "No space left on device"));
   const std::string page = dir_.path("page.html");
   const ProgramRun three =
       run({"equilibrium", "--scene", file, "--html", page, "--three", dir_.path("three.js")});
   EXPECT_EQ(three.exit_code, 1);
-  EXPECT_NE(three.error.find("libjs-three"), std::string::npos) << three.error;
+  EXPECT_TRUE(contains(three.error, "libjs-three"));
   EXPECT_FALSE(std::filesystem::exists(page));
   const ProgramRun scene_itself = run({"equilibrium", "--scene", file, "--html", file});
   EXPECT_EQ(scene_itself.exit_code, 2);
