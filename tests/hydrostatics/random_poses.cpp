@@ -6,6 +6,44 @@
 
 namespace buoyancy {
 
+void RandomBits::change(std::mt19937_64& random) {
+  if (given_.empty()) return;
+  for (std::uint64_t changes = 1 + random() % 4; changes > 0; --changes) {
+    std::uint64_t& number = given_[random() % given_.size()];
+    if (random() % 3 == 0) {
+      number = random();
+      continue;
+    }
+    // By a power of two, up or down, from all of the range to its last digits; it does not wrap around.
+    const std::uint64_t by = random() >> (1U + random() % 50U);
+    if (random() % 2 == 0) {
+      number = number > max() - by ? max() : number + by;
+    } else {
+      number = number < by ? 0 : number - by;
+    }
+  }
+}
+
+RandomPoses RandomPoses::again() const {
+  RandomPoses copy = *this;
+  copy.generator_.rewind();
+  return copy;
+}
+
+RandomPoses RandomPoses::changed(std::mt19937_64& random) const {
+  RandomPoses copy = again();
+  copy.generator_.change(random);
+  return copy;
+}
+
+double RandomPoses::power_of_ten(double low_exponent, double high_exponent) {
+  return std::pow(10.0, uniform(low_exponent, high_exponent));
+}
+
+double RandomPoses::log_uniform(double low, double high) {
+  return std::exp(uniform(std::log(low), std::log(high)));
+}
+
 double RandomPoses::uniform(double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(generator_);
 }
