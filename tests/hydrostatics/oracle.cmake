@@ -11,6 +11,7 @@ add_library(
   ${CMAKE_CURRENT_LIST_DIR}/rational.cpp
   ${CMAKE_CURRENT_LIST_DIR}/stiffness_autodiff.cpp
   ${CMAKE_CURRENT_LIST_DIR}/test_meshes.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/truth.cpp
   ${CMAKE_CURRENT_LIST_DIR}/wetted_moments_reference.cpp)
 target_include_directories(buoyancy_oracle PUBLIC ${PROJECT_SOURCE_DIR})
 target_link_libraries(buoyancy_oracle PUBLIC buoyancy_hydrostatics ${GMP_LIBRARY} PRIVATE buoyancy_compile_options)

@@ -101,36 +101,6 @@ TEST(WettedSurface, IsBitIdenticalAcrossCompilersAndBuildTypes) {
   }
 }
 
-// The oracle in extended precision suffices: its error is below a thousandth of the gates. The instruction
-// sets need no loop of their own, since they give the same bits.
-TEST(WettedSurface, HoldsGatesOfExactMethodsOverManyPoses) {
-  for (const NamedMesh& named : closed_test_meshes()) {
-    const HydrostaticMesh mesh = make_hydrostatic_mesh({named.mesh, {}}, WithTree::kNo);
-    const Vec3 reference_B = mesh.center_B;
-    const double gate = mesh.volume_tolerance();
-    const double torque_gate = gate * mesh.max_lever_arm(reference_B);
-    // So far from its origin the oracle needs rational arithmetic, as in exact_methods_test.cpp.
-    if (mesh.center_B.norm() > 1e5 * mesh.diagonal) continue;
-    const Solver exact(mesh, Method::kExact);
-    const Solver exact_surface(mesh, Method::kExactSurface);
-    for (const PoseInWater& at : poses_for(named.mesh, kAgreementPoses, 42)) {
-      const auto truth = exact_displacement<long double>(named.mesh, at.pose, at.water);
-      const Vec3 torque_W = at.pose.q_WB.normalized() * truth.torque(reference_B).cast<double>();
-      // As documented, the gates grow with the depth of a body deeper than its size.
-      const WaterPlane plane = water_plane_in_body(at.pose, at.water, mesh.center_B);
-      const double depths = std::abs(plane.h_c) / mesh.diagonal;
-      const double depth = depths > 1.0 ? 1.0 + depths : 1.0;
-      for (const Solver* solver : {&exact, &exact_surface}) {
-        const BuoyancyResult result = buoyancy(*solver, at.pose, at.water, reference_B);
-        EXPECT_LE(std::abs(result.volume - static_cast<double>(truth.volume)), gate * depth)
-            << named.name << ", " << to_string(solver->method());
-        EXPECT_LE((result.torque_W - torque_W).norm(), torque_gate * depth)
-            << named.name << ", " << to_string(solver->method());
-      }
-    }
-  }
-}
-
 using Real = long double;
 using RealPoint = Point<Real>;
 
