@@ -59,7 +59,7 @@ Pose at(double x, double y, double z, double heading = 0.0) {
 // Calls add(k, f, gradient) for every component, unstretched: its share of f and of its gradient at p_W, and
 // its horizontal wave vector k.
 template <typename Add>
-void for_each_component(const SeaAtTime& sea, const Vec3& p_W, const Add& add) {
+void for_each_component(const TestSea& sea, const Vec3& p_W, const Add& add) {
   const PreparedComponents& waves = sea.sea.prepared();
   const double depth = sea.sea.depth();
   std::vector<double> phases;
@@ -119,7 +119,7 @@ std::complex<double> divided_difference_of_exp(std::complex<double> a, std::comp
 // The integral of the waves' unstretched pressure in deep water times the normal over a submerged surface,
 // exact but for rounding: that of exp over a triangle is twice its area times its divided difference.
 // `grow`: 1, or 0 for pressures that do not change with the height.
-Vec3 wave_force_by_divided_differences(const FloatingBody& body, const SeaAtTime& sea, const Pose& pose,
+Vec3 wave_force_by_divided_differences(const SeaBody& body, const TestSea& sea, const Pose& pose,
                                        double grow) {
   const PreparedComponents& waves = sea.sea.prepared();
   std::vector<double> phases;
@@ -148,7 +148,7 @@ Vec3 wave_force_by_divided_differences(const FloatingBody& body, const SeaAtTime
 }
 
 TEST(ClosedForm, SubmergedRockIsASumOfDividedDifferences) {
-  const FloatingBody rock(RockShape{0.7, 12});
+  const SeaBody rock(RockShape{0.7, 12});
   Pose pose = at(3.0, 4.0, -2.5);
   pose.q_WB = Eigen::Quaterniond(0.3, -0.7, 0.5, 0.4).normalized();
   const Vec3 weight = rock.mesh.volume * Vec3::UnitZ();
@@ -158,7 +158,7 @@ TEST(ClosedForm, SubmergedRockIsASumOfDividedDifferences) {
     SeaDescription description = tiny_wind_sea(kInfinity);
     description.pressure = pressure;
     std::get<IrregularWaves>(description.systems[0]).significant_wave_height = hydrostatic ? 0.5 : 1e-3;
-    const SeaAtTime sea(description, 1'700'000);
+    const TestSea sea(description, 1'700'000);
     const Vec3 expected = wave_force_by_divided_differences(rock, sea, pose, hydrostatic ? 0.0 : 1.0);
     const double error = (hydrostatic ? 1e-12 : 1e-3) * expected.norm();
     const WaveLoad load = hierarchical_load(rock, sea, pose, hydrostatic ? 1e-7 : 1e-8);
@@ -172,9 +172,9 @@ TEST(ClosedForm, SubmergedRockIsASumOfDividedDifferences) {
 class ClosedFormAtDepth : public ::testing::TestWithParam<double> {};
 
 TEST_P(ClosedFormAtDepth, SubmergedSphereFollowsTheWaterAtItsCentre) {
-  const FloatingBody sphere(SphereShape{0.8, 60});
+  const SeaBody sphere(SphereShape{0.8, 60});
   for (const double z : {-0.9, -2.0}) {
-    const SeaAtTime sea(tiny_wind_sea(GetParam()), 4'300'000);
+    const TestSea sea(tiny_wind_sea(GetParam()), 4'300'000);
     const Pose pose = at(3.0, 4.0, z);
     Vec3 expected = Vec3::Zero();
     for_each_component(sea, pose.p_WB, [&](const Vec3&, double, const Vec3& gradient) {
@@ -193,9 +193,9 @@ TEST_P(ClosedFormAtDepth, SubmergedSphereFollowsTheWaterAtItsCentre) {
 
 TEST_P(ClosedFormAtDepth, SubmergedBoxIsAProductOfSincs) {
   const Vec3 size(1.8, 1.2, 0.9);
-  const FloatingBody box(BoxShape{{size.x(), size.y(), size.z()}, {24, 16, 12}});
+  const SeaBody box(BoxShape{{size.x(), size.y(), size.z()}, {24, 16, 12}});
   for (const double heading : {0.0, 0.7}) {
-    const SeaAtTime sea(tiny_wind_sea(GetParam()), 4'300'000);
+    const TestSea sea(tiny_wind_sea(GetParam()), 4'300'000);
     const Pose pose = at(3.0, 4.0, -0.8, heading);
     Vec3 expected_W = Vec3::Zero();
     for_each_component(sea, pose.p_WB, [&](const Vec3& k_W, double, const Vec3& gradient) {
@@ -218,8 +218,8 @@ TEST_P(ClosedFormAtDepth, PiercingBoxInTinyWavesIsThatOfItsMeanSurface) {
   // Numbers that float32 holds: the rounding of the tree's would be as large as waves so small.
   const Vec3 size(1.75, 1.25, 1.0);
   constexpr double kDraught = 0.625;
-  const FloatingBody box(BoxShape{{size.x(), size.y(), size.z()}, {16, 16, 16}});
-  const SeaAtTime sea(tiny_wind_sea(GetParam()), 1'700'000);
+  const SeaBody box(BoxShape{{size.x(), size.y(), size.z()}, {16, 16, 16}});
+  const TestSea sea(tiny_wind_sea(GetParam()), 1'700'000);
   const Pose pose = at(3.0, 4.0, 0.5 * size.z() - kDraught, 0.7);
   const Vec3 bottom(3.0, 4.0, -kDraught);
   Vec3 expected_B = size.x() * size.y() * kDraught * Vec3::UnitZ();
@@ -256,9 +256,9 @@ TEST(ClosedForm, SubmergedBoxInHighWavesIsThatOfTheStretchedPressure) {
   constexpr double kPsi = 0.7;
   const Vec3 size(1.8, 1.2, 1.0);
   const Vec3 center(0.0, 0.0, -1.1);
-  const FloatingBody box(BoxShape{{size.x(), size.y(), size.z()}, {40, 4, 40}});
+  const SeaBody box(BoxShape{{size.x(), size.y(), size.z()}, {40, 4, 40}});
   for (const double depth : {kInfinity, 2.5}) {
-    const SeaAtTime sea(one_wave(kA, kK, kPsi, WavePressure::kWheeler, depth));
+    const TestSea sea(one_wave(kA, kK, kPsi, WavePressure::kWheeler, depth));
     const auto phi = [&](double x, double z) {
       const double eta = kA * std::cos(kK * x - kPsi);
       if (std::isinf(depth)) return -z + eta * std::exp(kK * (z - eta));
@@ -300,11 +300,11 @@ class PiercingCylinder : public ::testing::Test {
   }
   static double bessel(double order, double x) { return std::cyl_bessel_j(order, x); }
 
-  const FloatingBody body{CylinderShape{corner_radius(), kHeight, kSides, 40}};
+  const SeaBody body{CylinderShape{corner_radius(), kHeight, kSides, 40}};
   const Pose pose = at(0.0, 0.0, 0.5 * kHeight - kDraught);
   const Vec3 bottom_B{0.0, 0.0, -0.5 * kHeight};
 
-  void expect_force(const SeaAtTime& sea, const Vec3& force, double tolerance, double error) const {
+  void expect_force(const TestSea& sea, const Vec3& force, double tolerance, double error) const {
     const WaveLoad load = hierarchical_load(body, sea, pose, tolerance);
     EXPECT_LT((load.force - force).norm(),
               std::min(load.force_bound, 10.0 * tolerance * body.mesh.volume) + error);
@@ -315,7 +315,7 @@ class PiercingCylinder : public ::testing::Test {
 TEST_F(PiercingCylinder, HydrostaticForceHasAClosedForm) {
   constexpr double kA = 0.25;
   for (const double psi : {0.4, 1.9, -2.5}) {
-    const SeaAtTime sea(one_wave(kA, kK, psi, WavePressure::kHydrostatic));
+    const TestSea sea(one_wave(kA, kK, psi, WavePressure::kHydrostatic));
     const double first = bessel(1, kK * kR);
     const Vec3 force(-kPi * kR *
                          (2.0 * kA * kDraught * first * std::sin(psi) +
@@ -328,7 +328,7 @@ TEST_F(PiercingCylinder, HydrostaticForceHasAClosedForm) {
 TEST_F(PiercingCylinder, WheelerForceIsAnIntegralOverTheAngle) {
   constexpr double kA = 0.25;
   for (const double psi : {0.4, 1.9, -2.5}) {
-    const SeaAtTime sea(one_wave(kA, kK, psi, WavePressure::kWheeler));
+    const TestSea sea(one_wave(kA, kK, psi, WavePressure::kWheeler));
     const auto eta = [psi](double x) { return kA * std::cos(kK * x - psi); };
     const double side = -kR * integral(0.0, 2.0 * kPi, [&](double angle) {
       const double e = eta(kR * std::cos(angle));
@@ -349,7 +349,7 @@ TEST_F(PiercingCylinder, WheelerForceIsAnIntegralOverTheAngle) {
 TEST_F(PiercingCylinder, LinearForceAndMomentAreBesselFunctions) {
   constexpr double kA = 2e-4;
   constexpr double kPsi = 0.8;
-  const SeaAtTime sea(one_wave(kA, kK, kPsi, WavePressure::kWheeler));
+  const TestSea sea(one_wave(kA, kK, kPsi, WavePressure::kWheeler));
   const double decay = std::exp(-kK * kDraught);
   const double ring = 2.0 * kPi * kA * kR * bessel(1, kK * kR) / kK;
   const Vec3 force(-ring * std::sin(kPsi) * (1.0 - decay), 0.0,
