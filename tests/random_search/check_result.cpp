@@ -3,64 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
-#include "tests/hydrostatics/ball.h"
+#include "tests/hydrostatics/truth.h"
 
 namespace buoyancy {
 namespace {
-
-// A ball's radius counts as error. The largest radius for which a ball is used, relative to the limit.
-constexpr double kMaxRelativeRadius = 0.01;
-
-template <typename T>
-struct TrueWrench {
-  Vec3T<T> force_W, torque_W;
-};
-
-template <typename T>
-TrueWrench<T> true_wrench(const TriangleMesh& source, const SearchPose& requested) {
-  const auto displaced = exact_displacement<T>(source, requested.pose, requested.water);
-  const T weight = T(requested.water.density) * T(requested.water.gravity);
-  return {requested.water.up_W.cast<T>() * T(weight * displaced.volume),
-          exactly_in_world<T>(requested.pose, displaced.torque(requested.reference_B)) * weight};
-}
-
-class Truth {
- public:
-  Truth(const TriangleMesh& source, const SearchPose& requested)
-      : source_(&source), requested_(&requested), balls_(true_wrench<Ball>(source, requested)) {}
-
-  // Upper bounds on the norms of the errors, from rational arithmetic where balls are too wide for the limit.
-  double force_error(const Vec3& force_W, double limit) {
-    return error(force_W, limit, &TrueWrench<Ball>::force_W, &TrueWrench<Rational>::force_W);
-  }
-  double torque_error(const Vec3& torque_W, double limit) {
-    return error(torque_W, limit, &TrueWrench<Ball>::torque_W, &TrueWrench<Rational>::torque_W);
-  }
-
- private:
-  double error(const Vec3& found, double limit, Vec3T<Ball> TrueWrench<Ball>::*in_balls,
-               Vec3T<Rational> TrueWrench<Rational>::*in_rationals) {
-    const Vec3T<Ball>& ball = balls_.*in_balls;
-    Vec3 max_error;
-    Vec3 radius;
-    for (int i = 0; i < 3; ++i) {
-      max_error[i] = static_cast<double>(ball[i].distance(found[i]));
-      radius[i] = static_cast<double>(ball[i].rad);
-    }
-    if (max_error.norm() <= limit && radius.norm() <= kMaxRelativeRadius * limit) return max_error.norm();
-    if (!rationals_) rationals_ = true_wrench<Rational>(*source_, *requested_);
-    const Vec3T<Rational> difference = found.cast<Rational>() - (*rationals_).*in_rationals;
-    for (int i = 0; i < 3; ++i) max_error[i] = difference[i].convert_to<double>();
-    return max_error.norm();
-  }
-
-  const TriangleMesh* source_;
-  const SearchPose* requested_;
-  TrueWrench<Ball> balls_;
-  std::optional<TrueWrench<Rational>> rationals_;
-};
 
 double ratio(double value, double limit) {
   return value == 0.0 ? 0.0 : value / limit;
@@ -80,7 +27,7 @@ class ResultChecker {
   ResultChecker(const TriangleMesh& source, const HydrostaticMesh& mesh, const SearchPose& requested)
       : mesh_(mesh),
         requested_(requested),
-        truth_(source, requested),
+        truth_({&source}, requested.pose, requested.water, requested.reference_B),
         weight_(requested.water.density * requested.water.gravity) {}
 
   void check(const GivenResult& given, CheckReport& report) {

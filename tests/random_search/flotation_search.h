@@ -11,8 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "flotation/equilibrium.h"
+#include "geometry/triangle_mesh.h"
 #include "tests/random_search/random_mesh.h"
+#include "tests/random_search/search_engine.h"
 
 namespace buoyancy {
 
@@ -22,7 +23,6 @@ struct RandomTank {
   double share_of_mass = 0.0;  // of the mass of body and liquids
 };
 
-// Depends on the seed and the number alone.
 struct FlotationCase {
   RandomMesh mesh;
   double relative_density = 0.0;         // mass over that of the water that the body can displace
@@ -32,28 +32,15 @@ struct FlotationCase {
 
   std::string text() const;
 };
-FlotationCase random_flotation_case(std::uint64_t seed, std::int64_t number);
+FlotationCase random_flotation_case(RandomPoses& random);
 
-struct FailedFlotationCase {
-  std::int64_t number = 0;
-  std::string violation;
+// An attitude that balances has residuals within their bounds: the largest of their shares, of force and
+// torque, over the attitudes of a case. 0 if there is none.
+struct BalanceShares {
+  double force = 0.0, torque = 0.0;
 };
+BalanceShares balance_shares(const FlotationCase& flotation);
 
-struct FlotationSearchStats {
-  std::int64_t cases = 0;
-  std::int64_t attitudes = 0;
-  std::int64_t families = 0;
-  std::int64_t most_attitudes = 0;  // of one body
-  double largest_force = 0.0;       // residual over bound
-  double largest_torque = 0.0;
-  std::vector<FailedFlotationCase> failures;
-
-  FlotationSearchStats& operator+=(const FlotationSearchStats& other);
-  std::string text() const;
-};
-
-// Runs the cases begin <= number < end.
-FlotationSearchStats search_flotation(std::uint64_t seed, std::int64_t begin, std::int64_t end,
-                                      unsigned threads);
+RandomSearch flotation_search();
 
 }  // namespace buoyancy

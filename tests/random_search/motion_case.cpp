@@ -18,10 +18,6 @@ namespace {
 constexpr double kDensity = 1000.0;  // [kg/m^3], of the water
 constexpr double kMaxStep = 0.1;     // [s]
 
-double log_uniform(RandomPoses& random, double low, double high) {
-  return std::exp(random.uniform(std::log(low), std::log(high)));
-}
-
 Vec3 random_vector(RandomPoses& random, double length) {
   const double factor = random.uniform(0.0, length);
   return factor * random.direction();
@@ -59,7 +55,7 @@ struct ShapeAndSize {
 };
 
 ShapeAndSize random_shape(RandomPoses& random) {
-  const double size = log_uniform(random, 0.1, 5.0);
+  const double size = random.log_uniform(0.1, 5.0);
   const double a = random.uniform(0.2, 1.0);
   const double b = random.uniform(0.2, 1.0);
   switch (random.pick(4)) {
@@ -114,7 +110,7 @@ DragDescription random_drag(RandomPoses& random, const Vec6& scale, double rate,
 AddedMassDescription random_added_mass(RandomPoses& random, const Vec6& scale, double size) {
   AddedMassDescription added;
   const Mat6 matrix = random.pick(2) == 0 ? random_semidefinite(random) : random_diagonal(random);
-  added.matrix = log_uniform(random, 0.1, 50.0) * (scale.asDiagonal() * matrix * scale.asDiagonal());
+  added.matrix = random.log_uniform(0.1, 50.0) * (scale.asDiagonal() * matrix * scale.asDiagonal());
   added.matrix = (0.5 * (added.matrix + added.matrix.transpose())).eval();
   if (random.pick(2) == 0) added.center_B = random_vector(random, 0.2 * size);
   added.immersion = random_scaling(random);
@@ -168,9 +164,9 @@ MotionCase random_motion_case(std::uint64_t seed, std::int64_t number) {
   dynamics.density = piercing ? kDensity * random.uniform(0.05, 0.95) : kDensity;
   dynamics.position = {0.0, 0.0, piercing ? random.uniform(-0.3, 0.3) * size : -1000.0};
   dynamics.orientation = random.rotation();
-  const double speed = log_uniform(random, 0.01, piercing ? 1.0 : 5.0);
+  const double speed = random.log_uniform(0.01, piercing ? 1.0 : 5.0);
   dynamics.linear_velocity = random_vector(random, piercing ? speed * std::sqrt(size) : speed);
-  dynamics.angular_velocity = random_vector(random, log_uniform(random, 0.01, piercing ? 1.0 : 5.0));
+  dynamics.angular_velocity = random_vector(random, random.log_uniform(0.01, piercing ? 1.0 : 5.0));
 
   // Mass and inertia follow from the mesh.
   body.drag.emplace();
@@ -180,7 +176,7 @@ MotionCase random_motion_case(std::uint64_t seed, std::int64_t number) {
   const Vec6 scale = mass_scale(rigid);
   if (random.pick(8) > 0) body.added_mass = random_added_mass(random, scale, size);
 
-  result.options.step = log_uniform(random, 1e-4, kMaxStep);
+  result.options.step = random.log_uniform(1e-4, kMaxStep);
   if (piercing) {
     const Scene with_added_mass = scene();
     const Body& prepared = with_added_mass.bodies().front();
@@ -188,11 +184,11 @@ MotionCase random_motion_case(std::uint64_t seed, std::int64_t number) {
         highest_natural_frequency(prepared, rigid, initial_state(rigid, dynamics), with_added_mass.water())
             .frequency;
     const double largest = frequency > 0.0 ? kAccuracyLimit / frequency : kMaxStep;
-    result.options.step = std::min(kMaxStep, largest * log_uniform(random, 0.02, 1.0));
+    result.options.step = std::min(kMaxStep, largest * random.log_uniform(0.02, 1.0));
   }
   Vec6 twist;
   twist << dynamics.linear_velocity, dynamics.angular_velocity;
-  const double rate = log_uniform(random, 1e-3, 1e3) / result.options.step;
+  const double rate = random.log_uniform(1e-3, 1e3) / result.options.step;
   body.drag = random_drag(random, scale, rate, twist, size);
   return result;
 }

@@ -1,12 +1,9 @@
 #include "tests/random_search/motion_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <functional>
-#include <mutex>
-#include <thread>
+#include <string>
+#include <vector>
 
 #include "engine/request_handler.h"
 
@@ -62,91 +59,73 @@ Energies simulate(const SceneDescription& description, const SimulationOptions& 
   return energies;
 }
 
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2g", value);
-  return text.data();
-}
+constexpr const char* kSubmergedRow = "submerged: growth of the kinetic energy in a step, of itself";
+constexpr const char* kVerletRow =
+    "piercing, velocity_verlet: energy over its start, of the largest kinetic energy";
+constexpr const char* kEulerRow = "piercing, semi_implicit_euler: likewise";
 
-void run_case(std::uint64_t seed, std::int64_t at, MotionSearchStats& stats) {
+SearchStats run_case(std::uint64_t seed, std::int64_t at) {
   const MotionCase motion = random_motion_case(seed, at);
   const bool piercing = motion.kind == MotionKind::kPiercing;
   const bool verlet = motion.options.integrator == Integrator::kVelocityVerlet;
-  MotionFigures& figures = stats.figures.at(!piercing ? 0 : verlet ? 1 : 2);
   const Energies damped = simulate(motion.scene, motion.options, motion.steps);
   const Energies undamped = simulate(motion.scene_without_drag(), motion.options, motion.steps);
-  ++figures.cases;
-  figures.steps += motion.steps;
-  std::string violation;
-  if (!damped.finite || !undamped.finite) violation = "a number that is not finite";
   // One scale for both runs: the body without drag is usually the faster.
   const double scale = std::max({damped.largest_kinetic, undamped.largest_kinetic, 1e-300});
   const double rise = piercing ? damped.rise() / scale : damped.kinetic_growth;
   const double own = piercing ? undamped.rise() / scale : undamped.kinetic_growth;
-  figures.rise.add(rise, at);
-  figures.rise_undamped.add(own, at);
-  if (rise > own) ++figures.above_own;
+  SearchStats stats;
+  stats.cases = 1;
+  SearchFigures& figures = stats.rows[!piercing ? kSubmergedRow : verlet ? kVerletRow : kEulerRow];
+  figures.counts = {{"cases", 1}, {"steps", motion.steps}, {"above that without drag", rise > own ? 1 : 0}};
+  figures.largest["rise"].add(rise, at);
+  figures.largest["rise without drag"].add(own, at);
+  std::vector<std::string> violations;
+  if (!damped.finite || !undamped.finite) violations.emplace_back("a number that is not finite");
   if (!piercing && std::max(rise, own) > kRoundingGrowth) {
-    violation = "kinetic energy grows by " + number(rise) + " of itself, without drag by " + number(own);
+    violations.push_back("kinetic energy grows by " + two_digits(rise) + " of itself, without drag by " +
+                         two_digits(own));
   }
   if (piercing && rise > std::max(own, documented_oscillation(motion.options.integrator))) {
-    violation =
-        "energy rises by " + number(rise) + " of the largest kinetic energy, without drag by " + number(own);
+    violations.push_back("energy rises by " + two_digits(rise) +
+                         " of the largest kinetic energy, without drag by " + two_digits(own));
   }
-  if (!violation.empty()) stats.failures.push_back({at, motion.text(), violation});
+  stats.add_violations(at, motion.text(), violations);
+  return stats;
 }
 
 }  // namespace
 
-MotionFigures& MotionFigures::operator+=(const MotionFigures& other) {
-  cases += other.cases;
-  steps += other.steps;
-  rise.add(other.rise.value, other.rise.at);
-  rise_undamped.add(other.rise_undamped.value, other.rise_undamped.at);
-  above_own += other.above_own;
-  return *this;
-}
-
-MotionSearchStats& MotionSearchStats::operator+=(const MotionSearchStats& other) {
-  for (std::size_t i = 0; i < figures.size(); ++i) figures[i] += other.figures[i];
-  failures.insert(failures.end(), other.failures.begin(), other.failures.end());
-  return *this;
-}
-
-MotionSearchStats search_motions(std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned threads) {
-  MotionSearchStats total;
-  std::mutex mutex;
-  const auto work = [&](unsigned offset) {
-    MotionSearchStats own;
-    for (std::int64_t at = begin + offset; at < end; at += threads) run_case(seed, at, own);
-    const std::lock_guard<std::mutex> lock(mutex);
-    total += own;
+RandomSearch motion_search() {
+  const auto number_of = [](const char* what) {
+    return SearchColumn{"case", [what](const SearchFigures& figures) {
+                          const auto found = figures.largest.find(what);
+                          return std::to_string(found == figures.largest.end() ? -1 : found->second.at);
+                        }};
   };
-  std::vector<std::thread> workers;
-  for (unsigned i = 1; i < threads; ++i) workers.emplace_back(work, i);
-  work(0);
-  for (std::thread& worker : workers) worker.join();
-  std::ranges::sort(total.failures, {}, &FailedMotionCase::number);
-  return total;
-}
-
-std::string markdown(const MotionSearchStats& stats) {
-  std::string text =
-      "| bodies | cases | steps | largest rise | case | without drag | case | rise above that without drag "
-      "|\n"
-      "|---|---|---|---|---|---|---|---|\n";
-  constexpr std::array<const char*, 3> kNames{
-      "submerged: growth of the kinetic energy in a step, of itself",
-      "piercing, velocity_verlet: energy over its start, of the largest kinetic energy",
-      "piercing, semi_implicit_euler: likewise"};
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    const MotionFigures& figures = stats.figures[i];
-    text += std::string("| ") + kNames[i] + " | " + std::to_string(figures.cases) + " | " +
-            std::to_string(figures.steps) + " | " + number(figures.rise.value) + " | " +
-            std::to_string(figures.rise.at) + " | " + number(figures.rise_undamped.value) + " | " +
-            std::to_string(figures.rise_undamped.at) + " | " + std::to_string(figures.above_own) + " |\n";
-  }
-  return text;
+  RandomSearch one;
+  one.name = "motion";
+  one.description = "Search for a motion with drag or added mass that gains energy";
+  one.first_column = "bodies";
+  one.rows = {kSubmergedRow, kVerletRow, kEulerRow};
+  one.run = [](std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned threads) {
+    return sum_in_parallel(static_cast<std::size_t>(end - begin), threads, [&](std::size_t i) {
+      return run_case(seed, begin + static_cast<std::int64_t>(i));
+    });
+  };
+  one.replay = [](std::uint64_t seed, std::int64_t number) {
+    const SearchStats stats = run_case(seed, number);
+    return stats.failures.empty() ? SearchFailure{number, random_motion_case(seed, number).text(), {}}
+                                  : stats.failures.front();
+  };
+  one.columns = {count_column("cases", "cases"),
+                 count_column("steps", "steps"),
+                 largest_column("largest rise", "rise"),
+                 number_of("rise"),
+                 largest_column("without drag", "rise without drag"),
+                 number_of("rise without drag"),
+                 count_column("rise above that without drag", "above that without drag")};
+  return one;
 }
 
 }  // namespace buoyancy

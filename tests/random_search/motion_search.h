@@ -8,12 +8,8 @@
 // becomes non-finite.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 #include "tests/random_search/motion_case.h"
+#include "tests/random_search/search_engine.h"
 
 namespace buoyancy {
 
@@ -25,43 +21,6 @@ constexpr double documented_oscillation(Integrator integrator) {
   return integrator == Integrator::kVelocityVerlet ? 0.06 : 0.25;
 }
 
-struct LargestRise {
-  double value = 0.0;
-  std::int64_t at = -1;  // the case's number
-
-  void add(double rise, std::int64_t number) {
-    if (rise > value) *this = {rise, number};
-  }
-};
-
-// The results of cases of one row of the table.
-struct MotionFigures {
-  std::int64_t cases = 0;
-  std::int64_t steps = 0;
-  LargestRise rise;            // relative to the kinetic energy before, or to the largest
-  LargestRise rise_undamped;   // of the same bodies without drag
-  std::int64_t above_own = 0;  // cases whose rise exceeds that without drag
-
-  MotionFigures& operator+=(const MotionFigures& other);
-};
-
-struct FailedMotionCase {
-  std::int64_t number = 0;
-  std::string text;
-  std::string violation;
-};
-
-struct MotionSearchStats {
-  std::array<MotionFigures, 3> figures{};  // submerged; piercing by velocity_verlet, semi_implicit_euler
-  std::vector<FailedMotionCase> failures;
-
-  MotionSearchStats& operator+=(const MotionSearchStats& other);
-};
-
-// Runs the cases begin <= number < end.
-MotionSearchStats search_motions(std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned threads);
-
-// A Markdown table of the figures.
-std::string markdown(const MotionSearchStats& stats);
+RandomSearch motion_search();
 
 }  // namespace buoyancy

@@ -19,10 +19,6 @@ std::int32_t count(RandomPoses& random, int min, int max) {
   return min + static_cast<std::int32_t>(random.pick(static_cast<std::size_t>(max - min) + 1));
 }
 
-double power_of_ten(RandomPoses& random, double low, double high) {
-  return std::pow(10.0, random.uniform(low, high));
-}
-
 TriangleMesh tetrahedron(RandomPoses& random) {
   TriangleMesh mesh;
   for (int i = 0; i < 4; ++i) mesh.add_vertex(random.direction());
@@ -85,7 +81,7 @@ void split_edge(TriangleMesh& mesh, RandomPoses& random) {
   const Triangle face = mesh.triangles[random.pick(mesh.triangles.size())];
   const std::int32_t a = face[0];
   const std::int32_t b = face[1];
-  const double share = power_of_ten(random, -9.0, -0.3);
+  const double share = random.power_of_ten(-9.0, -0.3);
   mesh.add_vertex(mesh.vertex(a) + share * (mesh.vertex(b) - mesh.vertex(a)));
   const auto middle = static_cast<std::int32_t>(mesh.vertex_count()) - 1;
   const std::size_t faces = mesh.triangles.size();
@@ -106,7 +102,7 @@ void split_edge(TriangleMesh& mesh, RandomPoses& random) {
 void split_face(TriangleMesh& mesh, RandomPoses& random) {
   const std::size_t t = random.pick(mesh.triangles.size());
   const Triangle face = mesh.triangles[t];
-  const double near = power_of_ten(random, -9.0, -0.5);
+  const double near = random.power_of_ten(-9.0, -0.5);
   const double along = random.uniform(0.0, 1.0);
   const Vec3 a = mesh.vertex(face[0]);
   const Vec3 b = mesh.vertex(face[1]);
@@ -147,12 +143,12 @@ RandomMesh drawn(RandomPoses& random) {
   Vec3 factors = Vec3::Ones();
   if (random.pick(3) == 0) {
     kind += ", stretched";
-    for (double& factor : factors) factor = power_of_ten(random, -2.5, 0.0);
+    for (double& factor : factors) factor = random.power_of_ten(-2.5, 0.0);
   }
-  const double scale = power_of_ten(random, -6.0, 6.0);
+  const double scale = random.power_of_ten(-6.0, 6.0);
   Vec3 offset = Vec3::Zero();
   const bool far = random.pick(3) == 0;
-  if (far) offset = scale * power_of_ten(random, 0.0, 6.0) * random.direction();
+  if (far) offset = scale * random.power_of_ten(0.0, 6.0) * random.direction();
   const Eigen::Quaterniond turn = random.pick(2) == 0 ? Eigen::Quaterniond::Identity() : random.rotation();
   const bool single_precision = random.pick(3) == 0;
   stretch(mesh, factors, turn, scale, offset, single_precision);
@@ -171,8 +167,7 @@ RandomMesh drawn(RandomPoses& random) {
 
 }  // namespace
 
-RandomMesh random_mesh(std::uint64_t seed) {
-  RandomPoses random(seed);
+RandomMesh random_mesh(RandomPoses& random) {
   RandomMesh mesh;
   do {
     mesh = drawn(random);

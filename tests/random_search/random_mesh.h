@@ -3,10 +3,10 @@
 // to 1e6 times their size from B's origin, in double and in float32 coordinates.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "geometry/mesh_validation.h"
+#include "tests/hydrostatics/random_poses.h"
 
 namespace buoyancy {
 
@@ -15,7 +15,7 @@ struct RandomMesh {
   ValidatedMesh validated;
 };
 
-// Returns the same mesh for the same seed. Draws again if validation rejects a mesh.
-RandomMesh random_mesh(std::uint64_t seed);
+// Draws again if validation rejects a mesh.
+RandomMesh random_mesh(RandomPoses& random);
 
 }  // namespace buoyancy

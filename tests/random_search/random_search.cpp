@@ -1,19 +1,24 @@
-// random_search: searches for a request whose result violates a rule of check_result.h.
+// random_search: searches for a case that violates a rule.
 //
-//   random_search [--cases N] [--seed S] [--record DIRECTORY] [--jobs J] [--table]
+//   random_search [--waves | --motion | --flotation] [--cases N] [--seed S] [--case K] [--record DIRECTORY]
+//                 [--jobs J] [--table]
 //
 // Resumes where the seed's last run stopped, until N cases are done; Ctrl-C stops between blocks without
-// losing results. Failing cases are shrunk and printed as tests. The last line summarizes all seeds of the
-// record. Exit status: 0 if there is no violation; 1 on a violation, in this run or earlier; 2 on invalid
-// arguments.
+// losing results. Violations are printed with all that is known about their cases. With --case, only this
+// case is evaluated and printed. The last line summarizes all seeds of the record. Exit status: 0 if there is
+// no violation; 1 on a violation, in this run or earlier; 2 on invalid arguments.
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <thread>
 
 #include "cli/progress_bar.h"
 #include "cli/tool_command_line.h"
-#include "tests/random_search/search_record.h"
-#include "tests/random_search/shrink.h"
+#include "tests/random_search/flotation_search.h"
+#include "tests/random_search/motion_search.h"
+#include "tests/random_search/search.h"
+#include "tests/random_search/wave_search.h"
 
 namespace {
 
@@ -21,7 +26,7 @@ using namespace buoyancy;
 
 constexpr int kViolationFound = 1;
 constexpr int kUsageError = 2;
-constexpr std::int64_t kBlock = 64 * kRequestsPerMesh;
+constexpr std::int64_t kBlock = 256;  // cases, at least; a run stops between blocks
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -30,59 +35,76 @@ int report_usage_error(const Error& error) {
   return kUsageError;
 }
 
-void print_failure(std::uint64_t seed, const FailedCase& failure) {
-  std::printf("seed %llu, case %lld: %s\n", static_cast<unsigned long long>(seed),
-              static_cast<long long>(failure.number), failure.mesh.c_str());
-  for (const std::string& violation : failure.violations) std::printf("  %s\n", violation.c_str());
-  const auto still_fails = [](const TriangleMesh& mesh, const SearchPose& requested) {
-    return fails(mesh, requested, product_results);
-  };
-  const SearchCase original = search_case(seed, failure.number);
-  if (still_fails(original.mesh, original.requested))
-    std::printf("%s", as_test(shrunk(original, still_fails), seed, failure.number).c_str());
+// Evaluates and prints a case. Returns the exit code.
+int print_case(const RandomSearch& search, std::uint64_t seed, std::int64_t number) {
+  const SearchFailure found = search.replay(seed, number);
+  const std::string option = search.name.empty() ? "" : " --" + search.name;
+  std::printf("seed %llu, case %lld (scripts/random_search%s --seed %llu --case %lld)\n%s",
+              static_cast<unsigned long long>(seed), static_cast<long long>(number), option.c_str(),
+              static_cast<unsigned long long>(seed), static_cast<long long>(number), found.text.c_str());
+  for (const std::string& violation : found.violations) std::printf("  VIOLATION: %s\n", violation.c_str());
   std::fflush(stdout);
+  return found.violations.empty() ? 0 : kViolationFound;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  buoyancy::ToolCommandLine command_line("Search for a request whose result violates an accuracy rule.",
-                                         "random_search");
+  const std::array searches{still_water_search(), wave_search(), motion_search(), flotation_search()};
+  std::array<bool, 4> chosen{};
   std::int64_t cases = 20'000;
   std::uint64_t seed = 1;
+  std::int64_t single = -1;
   std::filesystem::path record = "build/random_search";
   unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
   bool table = false;
+  ToolCommandLine command_line(searches[0].description + ".", "random_search");
+  for (std::size_t i = 1; i < searches.size(); ++i) {
+    command_line.add_flag("--" + searches[i].name, chosen[i], searches[i].description + ", instead");
+  }
   command_line.add_positive("--cases", cases, "Total number of cases of the seed, including earlier runs");
   command_line.add_option("--seed", seed, "Seed of the random cases");
+  command_line.add_number("--case", single, std::int64_t{0}, std::int64_t{1'000'000'000'000},
+                          "Evaluate and print this case alone");
   command_line.add_option("--record", record, "Directory of the results so far");
   command_line.add_number("--jobs", jobs, 1U, 1024U, "Threads");
-  command_line.add_flag("--table", table, "Print the largest error ratios of all seeds as a Markdown table");
+  command_line.add_flag("--table", table, "Print the figures of all seeds as a Markdown table");
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
+  if (std::ranges::count(chosen, true) > 1) {
+    return report_usage_error({"--waves, --motion, --flotation", "given together", "one of them", "", ""});
+  }
+  const auto which = std::ranges::find(chosen, true);
+  const RandomSearch& search =
+      searches[which == chosen.end() ? 0 : static_cast<std::size_t>(which - chosen.begin())];
+  if (single >= 0) return print_case(search, seed, single);
   const auto stop = [](int) { stop_requested = 1; };
   std::signal(SIGINT, stop);
   std::signal(SIGTERM, stop);
 
-  Expected<SearchStats> stats = load_stats(record, seed);
+  Expected<SearchStats> stats = search.load(record, seed);
   if (!stats) return report_usage_error(stats.error());
   ProgressBar progress("cases");
   const std::int64_t before = stats->cases;
+  const auto whole_units = [&](std::int64_t count) {
+    return (count + search.unit - 1) / search.unit * search.unit;
+  };
+  const std::int64_t block_size = whole_units(std::max<std::int64_t>(kBlock, search.unit * 2 * jobs));
   while (stats->cases < cases && stop_requested == 0) {
-    const std::int64_t left = cases - stats->cases;
-    const std::int64_t whole_meshes = (left + kRequestsPerMesh - 1) / kRequestsPerMesh * kRequestsPerMesh;
-    const SearchStats block = search(seed, stats->cases, stats->cases + std::min(kBlock, whole_meshes), jobs);
+    const std::int64_t count = std::min(block_size, whole_units(cases - stats->cases));
+    const SearchStats block = search.run(seed, stats->cases, stats->cases + count, jobs);
     *stats += block;
-    if (const Expected<void> saved = save_stats(record, seed, *stats); !saved)
+    if (const Expected<void> saved = search.save(record, seed, *stats); !saved) {
       return report_usage_error(saved.error());
+    }
     if (!block.failures.empty()) progress.clear();
-    for (const FailedCase& failure : block.failures) print_failure(seed, failure);
+    for (const SearchFailure& failure : block.failures) print_case(search, seed, failure.number);
     progress.update(stats->cases - before, cases - before, stats->cases - before);
   }
   progress.clear();
-  const Expected<SearchStats> all = load_all(record);
+  const Expected<SearchStats> all = search.load_all(record);
   if (!all) return report_usage_error(all.error());
-  if (table) std::printf("%s", markdown(*all).c_str());
-  std::printf("seed %llu: %s; all seeds: %s\n", static_cast<unsigned long long>(seed),
-              summary(*stats).c_str(), summary(*all).c_str());
+  if (table) std::printf("%s", search.table(*all).c_str());
+  std::printf("seed %llu: %s\nall seeds: %s\n", static_cast<unsigned long long>(seed),
+              search.summary(*stats).c_str(), search.summary(*all).c_str());
   return all->failed_cases > 0 ? kViolationFound : 0;
 }

@@ -1,16 +1,14 @@
 #include "tests/random_search/search.h"
 
-#include <algorithm>
-#include <atomic>
-#include <thread>
+#include <array>
+#include <random>
 
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/random_search/random_mesh.h"
+#include "tests/random_search/shrink.h"
 
 namespace buoyancy {
 namespace {
-
-constexpr std::size_t kMaxFailures = 100;
 
 std::uint64_t mesh_seed(std::uint64_t seed, std::int64_t mesh) {
   std::seed_seq mix{seed, static_cast<std::uint64_t>(mesh)};
@@ -32,7 +30,8 @@ struct MeshCases {
 MeshCases make_cases(std::uint64_t seed, std::int64_t mesh_number) {
   MeshCases cases;
   const std::uint64_t own_seed = mesh_seed(seed, mesh_number);
-  RandomMesh drawn = random_mesh(own_seed);
+  RandomPoses of_mesh(own_seed);
+  RandomMesh drawn = random_mesh(of_mesh);
   cases.first = mesh_number * kRequestsPerMesh;
   cases.kind = std::move(drawn.kind);
   cases.mesh = make_hydrostatic_mesh(drawn.validated);
@@ -42,12 +41,6 @@ MeshCases make_cases(std::uint64_t seed, std::int64_t mesh_number) {
     cases.requested.push_back(random_search_pose(cases.source, random));
   cases.results.resize(cases.requested.size());
   return cases;
-}
-
-BuoyancyResult result_of(Evaluator evaluator, const HydrostaticMesh& mesh, const SearchPose& requested) {
-  const double tolerance = evaluator == Evaluator::kTolerance ? requested.tolerance : 0.0;
-  return buoyancy(Solver(mesh, method_of(evaluator), tolerance), requested.pose, requested.water,
-                  requested.reference_B);
 }
 
 void add_hierarchical(MeshCases& cases, const std::string& target) {
@@ -66,54 +59,50 @@ void add_others(MeshCases& cases) {
   }
 }
 
+std::string row_of(Evaluator evaluator) {
+  return std::string("`") + to_string(evaluator) + "`";
+}
+
 SearchStats stats_of(const MeshCases& cases) {
   SearchStats stats;
   for (std::size_t i = 0; i < cases.requested.size(); ++i) {
     const std::int64_t number = cases.first + static_cast<std::int64_t>(i);
     const CheckReport report = check_results(cases.source, cases.mesh, cases.requested[i], cases.results[i]);
     ++stats.cases;
-    stats.results += static_cast<std::int64_t>(cases.results[i].size());
     for (std::size_t n = 0; n < report.figures.size(); ++n) {
-      auto& row = stats.largest[static_cast<std::size_t>(cases.results[i][n].evaluator)];
+      SearchFigures& row = stats.rows[row_of(cases.results[i][n].evaluator)];
+      ++row.counts["results"];
       const auto values = report.figures[n].values();
       for (std::size_t column = 0; column < values.size(); ++column) {
-        if (values[column] > row[column].value) row[column] = {values[column], number};
+        row.largest[Figures::kNames[column]].add(values[column], number);
       }
     }
-    if (report.violations.empty()) continue;
-    ++stats.failed_cases;
-    stats.failures.push_back({number, cases.kind, report.violations});
+    stats.add_violations(number, "  " + cases.kind + "\n", report.violations);
   }
   return stats;
 }
 
-template <typename Work>
-void in_parallel(std::size_t count, unsigned threads, const Work& work) {
-  std::atomic<std::size_t> next{0};
-  const auto loop = [&] {
-    for (std::size_t i = next++; i < count; i = next++) work(i);
+SearchFailure replay(std::uint64_t seed, std::int64_t number) {
+  const SearchCase original = search_case(seed, number);
+  const StillFails still_fails = [](const TriangleMesh& mesh, const SearchPose& requested) {
+    return fails(mesh, requested, product_results);
   };
-  std::vector<std::jthread> others;
-  for (unsigned n = 1; n < threads; ++n) others.emplace_back(loop);
-  loop();
+  const HydrostaticMesh mesh = make_hydrostatic_mesh({original.mesh, {}});
+  SearchFailure found{number, "  " + original.kind + "\n", {}};
+  found.violations =
+      check_results(original.mesh, mesh, original.requested, product_results(mesh, original.requested))
+          .violations;
+  const SearchCase shown = found.violations.empty() ? original : shrunk(original, still_fails);
+  found.text += as_test(shown, seed, number);
+  return found;
 }
 
 }  // namespace
 
-SearchStats& SearchStats::operator+=(const SearchStats& other) {
-  cases += other.cases;
-  results += other.results;
-  failed_cases += other.failed_cases;
-  for (std::size_t row = 0; row < largest.size(); ++row) {
-    for (std::size_t column = 0; column < largest[row].size(); ++column) {
-      if (other.largest[row][column].value > largest[row][column].value)
-        largest[row][column] = other.largest[row][column];
-    }
-  }
-  for (const FailedCase& failure : other.failures) {
-    if (failures.size() < kMaxFailures) failures.push_back(failure);
-  }
-  return *this;
+BuoyancyResult result_of(Evaluator evaluator, const HydrostaticMesh& mesh, const SearchPose& requested) {
+  const double tolerance = evaluator == Evaluator::kTolerance ? requested.tolerance : 0.0;
+  return buoyancy(Solver(mesh, method_of(evaluator), tolerance), requested.pose, requested.water,
+                  requested.reference_B);
 }
 
 std::vector<GivenResult> product_results(const HydrostaticMesh& mesh, const SearchPose& requested) {
@@ -137,11 +126,7 @@ SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, uns
     in_parallel(meshes.size(), threads, [&](std::size_t i) { add_hierarchical(meshes[i], target); });
   }
   force_simd_target("");
-  std::vector<SearchStats> stats_per_mesh(meshes.size());
-  in_parallel(meshes.size(), threads, [&](std::size_t i) { stats_per_mesh[i] = stats_of(meshes[i]); });
-  SearchStats total;
-  for (const SearchStats& stats : stats_per_mesh) total += stats;
-  return total;
+  return sum_in_parallel(meshes.size(), threads, [&](std::size_t i) { return stats_of(meshes[i]); });
 }
 
 SearchStats search(std::uint64_t seed, std::int64_t begin, std::int64_t end, const EvaluateAll& evaluate) {
@@ -159,6 +144,17 @@ SearchCase search_case(std::uint64_t seed, std::int64_t number) {
   MeshCases cases = make_cases(seed, number / kRequestsPerMesh);
   return {std::move(cases.kind), std::move(cases.source),
           cases.requested[static_cast<std::size_t>(number % kRequestsPerMesh)]};
+}
+
+RandomSearch still_water_search() {
+  RandomSearch one;
+  one.description = "Search for a request whose result violates an accuracy rule";
+  one.unit = kRequestsPerMesh;
+  one.run = search;
+  one.replay = replay;
+  for (const Evaluator evaluator : kEvaluators) one.rows.push_back(row_of(evaluator));
+  for (const char* const name : Figures::kNames) one.columns.push_back(largest_column(name, name));
+  return one;
 }
 
 }  // namespace buoyancy

@@ -9,22 +9,6 @@
 namespace buoyancy {
 namespace {
 
-double power_of_ten(RandomPoses& random, double low, double high) {
-  return std::pow(10.0, random.uniform(low, high));
-}
-
-double sign(RandomPoses& random) {
-  return random.pick(2) == 0 ? 1.0 : -1.0;
-}
-
-Eigen::Quaterniond quarter_turns(RandomPoses& random) {
-  const double r = std::sqrt(0.5);
-  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
-  for (std::size_t n = random.pick(4); n > 0; --n) q = q * Eigen::Quaterniond(r, r, 0, 0);
-  for (std::size_t n = random.pick(4); n > 0; --n) q = q * Eigen::Quaterniond(r, 0, 0, r);
-  return q;
-}
-
 Vec3 normal_of(const TriangleMesh& mesh, const Triangle& face) {
   const Vec3 a = mesh.vertex(face[0]);
   return (mesh.vertex(face[1]) - a).cross(mesh.vertex(face[2]) - a);
@@ -34,18 +18,18 @@ Eigen::Quaterniond random_rotation(const TriangleMesh& mesh, const Triangle& fac
                                    RandomPoses& random) {
   switch (random.pick(6)) {
     case 0:
-      return quarter_turns(random);
+      return random.quarter_turns();
     case 1: {
-      const double tilt = power_of_ten(random, -17.0, -3.0);
-      return quarter_turns(random) *
-             Eigen::Quaterniond(1.0, tilt * sign(random), tilt * random.uniform(-1, 1), 0.0);
+      const double tilt = random.power_of_ten(-17.0, -3.0);
+      return random.quarter_turns() *
+             Eigen::Quaterniond(1.0, tilt * random.sign(), tilt * random.uniform(-1, 1), 0.0);
     }
     case 2: {  // a face lies in the water plane, or nearly so
       const Vec3 normal = normal_of(mesh, face).normalized();
       if (!(normal.norm() > 0.5)) return random.rotation();
-      Eigen::Quaterniond flat = rotation_between(normal, sign(random) * up_W);
+      Eigen::Quaterniond flat = rotation_between(normal, random.sign() * up_W);
       if (random.pick(2) == 0) return flat;
-      const double tilt = power_of_ten(random, -17.0, -6.0);
+      const double tilt = random.power_of_ten(-17.0, -6.0);
       return flat * Eigen::Quaterniond(1.0, tilt, 0.0, tilt);
     }
     default:
@@ -63,13 +47,13 @@ Vec3 random_target(const TriangleMesh& mesh, const Triangle& face, const Vec3& u
     case 1:
       return 0.5 * (a + mesh.vertex(face[1]));
     case 2: {  // grazes the highest or the lowest vertex
-      const double side = sign(random);
+      const double side = random.sign();
       Vec3 farthest = a;
       for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
         const Vec3 x = mesh.vertex(static_cast<std::int32_t>(i));
         if (side * up_B.dot(x - farthest) > 0.0) farthest = x;
       }
-      return farthest - side * power_of_ten(random, -15.0, -1.0) * box.diagonal() * up_B;
+      return farthest - side * random.power_of_ten(-15.0, -1.0) * box.diagonal() * up_B;
     }
     default:
       return box.center() + random.uniform(-0.6, 0.6) * box.diagonal() * random.direction();
@@ -77,7 +61,7 @@ Vec3 random_target(const TriangleMesh& mesh, const Triangle& face, const Vec3& u
 }
 
 double nudged(double value, RandomPoses& random) {
-  const double to = sign(random) * std::numeric_limits<double>::infinity();
+  const double to = random.sign() * std::numeric_limits<double>::infinity();
   for (std::size_t ulps = random.pick(9); ulps > 0; --ulps) value = std::nextafter(value, to);
   return value;
 }
@@ -96,14 +80,14 @@ SearchPose random_search_pose(const TriangleMesh& mesh, RandomPoses& random) {
 
   Vec3 target_W = Vec3::Zero();  // position of the target point, relative to the water plane at level 0
   if (random.pick(3) == 0) {
-    target_W = size * power_of_ten(random, 0.0, 8.0) * random.direction();
+    target_W = size * random.power_of_ten(0.0, 8.0) * random.direction();
     target_W -= up_W.dot(target_W) * up_W;
   }
   if (random.pick(3) == 0) {
-    requested.water.level = sign(random) * size * power_of_ten(random, -2.0, 6.0);
+    requested.water.level = random.sign() * size * random.power_of_ten(-2.0, 6.0);
     target_W += requested.water.level * up_W;
   }
-  if (random.pick(12) == 0) target_W += sign(random) * size * power_of_ten(random, -1.0, 4.0) * up_W;
+  if (random.pick(12) == 0) target_W += random.sign() * size * random.power_of_ten(-1.0, 4.0) * up_W;
   requested.pose.p_WB = target_W - q_WB * target_B;
   switch (random.pick(4)) {
     case 0:
@@ -116,12 +100,12 @@ SearchPose random_search_pose(const TriangleMesh& mesh, RandomPoses& random) {
     default:
       break;
   }
-  if (random.pick(4) == 0) requested.pose.q_WB.coeffs() *= sign(random) * random.uniform(0.999, 1.001);
+  if (random.pick(4) == 0) requested.pose.q_WB.coeffs() *= random.sign() * random.uniform(0.999, 1.001);
   requested.reference_B = bounding_box(mesh).center();
   if (random.pick(2) == 0)
-    requested.reference_B += size * power_of_ten(random, -1.0, 3.0) * random.direction();
+    requested.reference_B += size * random.power_of_ten(-1.0, 3.0) * random.direction();
   if (random.pick(3) == 0) requested.reference_B = Vec3::Zero();
-  requested.tolerance = power_of_ten(random, -9.0, -1.0);
+  requested.tolerance = random.power_of_ten(-9.0, -1.0);
   return requested;
 }
 

@@ -9,17 +9,15 @@
 
 #include <Eigen/Geometry>
 
+#include "base/format.h"
 #include "geometry/shapes.h"
 #include "waves/sea_snapshot.h"
+#include "waves/wave_spectrum.h"
 
 namespace buoyancy {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-double log_uniform(RandomPoses& random, double low, double high) {
-  return std::exp(random.uniform(std::log(low), std::log(high)));
-}
 
 bool chance(RandomPoses& random, double probability) {
   return random.uniform(0.0, 1.0) < probability;
@@ -27,11 +25,11 @@ bool chance(RandomPoses& random, double probability) {
 
 // Draws in a fixed order, which that of a product's factors is not.
 double signed_log_uniform(RandomPoses& random, double low, double high) {
-  const double magnitude = log_uniform(random, low, high);
+  const double magnitude = random.log_uniform(low, high);
   return random.pick(2) == 0 ? magnitude : -magnitude;
 }
 Vec3 random_offset(RandomPoses& random, double shortest, double longest) {
-  const double length = log_uniform(random, shortest, longest);
+  const double length = random.log_uniform(shortest, longest);
   return length * random.direction();
 }
 
@@ -106,7 +104,7 @@ WaveComponents random_components(RandomPoses& random, std::size_t count, double 
                                  double steepness, double gravity) {
   WaveComponents waves;
   for (std::size_t i = 0; i < count; ++i) {
-    const double k = 2.0 * kPi / log_uniform(random, shortest, longest);
+    const double k = 2.0 * kPi / random.log_uniform(shortest, longest);
     waves.push_back({random.uniform(0.2, 1.0) / k, std::sqrt(gravity * k), random.uniform(-360.0, 360.0),
                      random.uniform(-360.0, 360.0)});
   }
@@ -123,7 +121,7 @@ IrregularWaves random_irregular(RandomPoses& random, double length, double steep
   waves.significant_wave_height = std::min(0.7 * steepness / k, 4e3);
   if (random.pick(2) == 0) waves.gamma = random.uniform(1.0, 7.0);
   waves.direction = random.uniform(-180.0, 180.0);
-  waves.spreading = log_uniform(random, 1.0, 50.0);
+  waves.spreading = random.log_uniform(1.0, 50.0);
   waves.directions = 5;
   waves.frequencies = 40;
   waves.cutoff = random.uniform(2.0, 4.0);
@@ -161,7 +159,7 @@ void set_depth(SeaDescription& description, double depth, double gravity) {
 
 void draw_sea(WaveRequest& request, double size, RandomPoses& random) {
   const double gravity = request.water.gravity;
-  const double steepness = log_uniform(random, 3e-3, 0.3);
+  const double steepness = random.log_uniform(3e-3, 0.3);
   switch (random.pick(12)) {
     case 0:
     case 1:
@@ -180,15 +178,15 @@ void draw_sea(WaveRequest& request, double size, RandomPoses& random) {
     case 7:
       request.kind = SeaKind::kIrregular;
       request.description.systems = {
-          random_irregular(random, log_uniform(random, size, 30.0 * size), steepness, gravity)};
+          random_irregular(random, random.log_uniform(size, 30.0 * size), steepness, gravity)};
       break;
     case 8:
       request.kind = SeaKind::kShort;
       if (random.pick(4) == 0) {
         request.description.systems = {
-            random_irregular(random, log_uniform(random, 0.5 * size, size), steepness, gravity)};
+            random_irregular(random, random.log_uniform(0.5 * size, size), steepness, gravity)};
       } else {
-        const double shortest = log_uniform(random, size / 30.0, 0.8 * size);
+        const double shortest = random.log_uniform(size / 30.0, 0.8 * size);
         request.description.systems = {
             random_components(random, 1 + random.pick(4), shortest, size, steepness, gravity)};
       }
@@ -210,7 +208,7 @@ void draw_sea(WaveRequest& request, double size, RandomPoses& random) {
   }
   if (random.pick(4) == 0) {
     const double trough = sum_of_amplitudes(request.description.systems[0]);
-    const double above_trough = log_uniform(random, 1e-3, 2.0) * size;
+    const double above_trough = random.log_uniform(1e-3, 2.0) * size;
     set_depth(request.description, trough * random.uniform(1.01, 1.5) + above_trough, gravity);
     if (random.pick(8) == 0) {
       // Some troughs reach the bed, where that is not refused.
@@ -239,7 +237,7 @@ void draw_time(WaveRequest& request, RandomPoses& random) {
   if (random.pick(2) == 0) request.lead_time = random.uniform(-0.01, 0.1);
   if (random.pick(10) == 0) {
     // Somewhere on the ramp, at times before or after it.
-    request.description.ramp = log_uniform(random, 1.0, 1e4);
+    request.description.ramp = random.log_uniform(1.0, 1e4);
     const double t = random.uniform(-0.1, 1.2) * request.description.ramp;
     request.description.time_origin = request.utime - static_cast<std::int64_t>(1e6 * t);
   }
@@ -247,18 +245,15 @@ void draw_time(WaveRequest& request, RandomPoses& random) {
 
 Eigen::Quaterniond random_orientation(RandomPoses& random) {
   if (random.pick(4) > 0) return random.rotation();
-  const double r = std::sqrt(0.5);
-  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
-  for (std::size_t n = random.pick(4); n > 0; --n) q = q * Eigen::Quaterniond(r, r, 0, 0);
-  for (std::size_t n = random.pick(4); n > 0; --n) q = q * Eigen::Quaterniond(r, 0, 0, r);
+  Eigen::Quaterniond q = random.quarter_turns();
   if (random.pick(2) == 0) {
-    const double tilt = log_uniform(random, 1e-9, 1e-2);
+    const double tilt = random.log_uniform(1e-9, 1e-2);
     q = q * Eigen::Quaterniond(1.0, tilt, -tilt, 0.5 * tilt);
   }
   return q;
 }
 
-void draw_place(WaveRequest& request, const WaveMesh& body, RandomPoses& random) {
+void draw_place(WaveRequest& request, const WaveSearchBody& body, RandomPoses& random) {
   const Water& water = request.water;
   const double size = body.mesh.diagonal;
   const Sea sea = Sea::make(request.description, water).value();
@@ -301,11 +296,11 @@ void draw_place(WaveRequest& request, const WaveMesh& body, RandomPoses& random)
     }
     case 2:
       request.placement = "dry";
-      zeta = snapshot.elevation(x1, x2) + log_uniform(random, 0.5, 3.0) * size;
+      zeta = snapshot.elevation(x1, x2) + random.log_uniform(0.5, 3.0) * size;
       break;
     case 3:
       request.placement = "deep";
-      zeta = -log_uniform(random, 0.7, 30.0) * size;
+      zeta = -random.log_uniform(0.7, 30.0) * size;
       zeta -= random.uniform(0.0, 1.0) * sea.max_elevation();
       break;
     case 4:
@@ -326,7 +321,7 @@ void draw_place(WaveRequest& request, const WaveMesh& body, RandomPoses& random)
         break;
       case 1:
         request.placement += ", below the bed";
-        zeta = -sea.depth() - above - log_uniform(random, 1e-6, 5.0) * size;
+        zeta = -sea.depth() - above - random.log_uniform(1e-6, 5.0) * size;
         break;
       default:
         zeta = std::max(zeta, -sea.depth() - below + 1e-6 * size);
@@ -338,15 +333,15 @@ void draw_place(WaveRequest& request, const WaveMesh& body, RandomPoses& random)
 
 }  // namespace
 
-WaveMesh random_wave_mesh(RandomPoses& random) {
-  const double triangles = log_uniform(random, 12.0, 30e3);
+WaveSearchBody random_wave_mesh(RandomPoses& random) {
+  const double triangles = random.log_uniform(12.0, 30e3);
   auto [name, source] = random_shape(random, triangles);
   Vec3 factors = Vec3::Ones();
   const bool stretched = chance(random, 0.15);
   if (stretched) {
-    for (double& factor : factors) factor = log_uniform(random, 0.05, 1.0);
+    for (double& factor : factors) factor = random.log_uniform(0.05, 1.0);
   }
-  const double scale = log_uniform(random, 0.1, 30.0) / bounding_box(source).diagonal();
+  const double scale = random.log_uniform(0.1, 30.0) / bounding_box(source).diagonal();
   const Eigen::Quaterniond turn = random.pick(2) == 0 ? Eigen::Quaterniond::Identity() : random.rotation();
   Vec3 offset = Vec3::Zero();
   if (random.pick(2) == 0) offset = scale * random_offset(random, 0.1, 1e3);
@@ -357,7 +352,7 @@ WaveMesh random_wave_mesh(RandomPoses& random) {
     source.y[i] = moved.y();
     source.z[i] = moved.z();
   }
-  WaveMesh body;
+  WaveSearchBody body;
   body.mesh = make_hydrostatic_mesh(ValidatedMesh{source, {}}, WithTree::kNo);
   body.tree = build_patch_tree(body.mesh.surface);
   char text[160];
@@ -368,7 +363,7 @@ WaveMesh random_wave_mesh(RandomPoses& random) {
   return body;
 }
 
-WaveRequest random_wave_request(const WaveMesh& mesh, RandomPoses& random) {
+WaveRequest random_wave_request(const WaveSearchBody& mesh, RandomPoses& random) {
   WaveRequest request;
   const double size = mesh.mesh.diagonal;
   if (random.pick(10) == 0) request.water.gravity = random.uniform(1.0, 25.0);
@@ -385,7 +380,7 @@ WaveRequest random_wave_request(const WaveMesh& mesh, RandomPoses& random) {
     default:
       break;
   }
-  request.tolerance = log_uniform(random, 1e-5, 1e-2);
+  request.tolerance = random.log_uniform(1e-5, 1e-2);
   draw_sea(request, size, random);
   draw_time(request, random);
   draw_place(request, mesh, random);
@@ -393,6 +388,34 @@ WaveRequest random_wave_request(const WaveMesh& mesh, RandomPoses& random) {
   if (random.pick(2) == 0) request.reference_B += size * random_offset(random, 0.01, 3.0);
   if (random.pick(8) == 0) request.reference_B = Vec3::Zero();
   return request;
+}
+
+std::string_view to_string(SeaKind kind) {
+  switch (kind) {
+    case SeaKind::kRegular:
+      return "regular";
+    case SeaKind::kSeveral:
+      return "2 to 16 components";
+    case SeaKind::kIrregular:
+      return "irregular, 200 components";
+    case SeaKind::kShort:
+      return "short";
+    case SeaKind::kSteep:
+      return "steep";
+    case SeaKind::kLong:
+      return "very long";
+  }
+  return "";
+}
+
+std::string describe(const WaveRequest& request) {
+  const SeaDescription& sea = request.description;
+  const std::size_t components = number_of_components(sea.systems.front());
+  return "  " + std::string(to_string(request.kind)) + ", " + request.placement + ", pressure " +
+         std::string(to_string(sea.pressure)) + ", depth " + format_shortest(sea.depth) + ", " +
+         std::to_string(components) + " components, tolerance " + format_shortest(request.tolerance) +
+         "\n  at " + format_vector(request.pose.p_WB, 17) + ", up " + format_vector(request.water.up_W, 17) +
+         "\n";
 }
 
 }  // namespace buoyancy

@@ -14,7 +14,7 @@
 
 namespace buoyancy {
 
-struct WaveMesh {
+struct WaveSearchBody {
   std::string kind;  // "rock of 2880 triangles, 3.1 m"
   TriangleMesh source_B;
   HydrostaticMesh mesh;
@@ -38,10 +38,10 @@ struct WaveRequest {
   double tolerance = 1e-3;
 };
 
-WaveMesh random_wave_mesh(RandomPoses& random);
-WaveRequest random_wave_request(const WaveMesh& mesh, RandomPoses& random);
+WaveSearchBody random_wave_mesh(RandomPoses& random);
+WaveRequest random_wave_request(const WaveSearchBody& mesh, RandomPoses& random);
 
-// Everything about a request, with 17 digits, in several lines.
+// What kind of request it is, and where, in two lines.
 std::string describe(const WaveRequest& request);
 
 }  // namespace buoyancy

@@ -1,28 +1,27 @@
 #include "tests/random_search/wave_search.h"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <memory>
 #include <numbers>
 #include <random>
-#include <thread>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/format.h"
 #include "hydrostatics/wetted_tree_sum.h"
+#include "tests/wave_loads/reference_load.h"
 #include "waves/sea_snapshot.h"
 
 namespace buoyancy {
 namespace {
 
-constexpr std::size_t kMaxFailures = 100;
 constexpr std::int64_t kAllTargetsEvery = 16;
 constexpr double kGoal = 0.05;  // of the oracle's error, over the bound
 constexpr double kUndecided = 0.1;
-constexpr double kBinsPerDecade = 20.0;
 
 RandomPoses random_of(std::uint64_t seed, std::int64_t number, std::uint32_t purpose) {
   std::seed_seq mix{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U),
@@ -59,7 +58,7 @@ struct Run {
 };
 
 struct Group {
-  WaveMesh mesh;
+  WaveSearchBody mesh;
   std::vector<std::unique_ptr<Run>> runs;
 };
 
@@ -75,17 +74,18 @@ Group make_group(std::uint64_t seed, std::int64_t mesh_number) {
   return group;
 }
 
-void evaluate_run(const WaveMesh& mesh, Run& run, const std::string& target, const EvaluateWaves& evaluate) {
+void evaluate_run(const WaveSearchBody& mesh, Run& run, const std::string& target,
+                  const EvaluateWaves& evaluate) {
   const WaveBody body{&mesh.mesh, &mesh.tree, run.request.tolerance};
   run.loads.push_back({target, evaluate(body, run.expansion, run.snapshot, run.request)});
 }
 
-ReferenceSea reference_sea_of(const WaveMesh& mesh, const Run& run) {
+ReferenceSea reference_sea_of(const WaveSearchBody& mesh, const Run& run) {
   return {run.sea, run.request.utime, run.request.lead_time, run.request.pose, mesh.mesh.center_B};
 }
 
 // With errors well below the smallest bound.
-ReferenceLoad truth_of(const WaveMesh& mesh, const Run& run, const ReferenceSea& sea) {
+ReferenceLoad truth_of(const WaveSearchBody& mesh, const Run& run, const ReferenceSea& sea) {
   double force_bound = std::numeric_limits<double>::infinity();
   double torque_bound = force_bound;
   double volume_bound = force_bound;
@@ -117,7 +117,7 @@ bool is_finite(const WaveLoad& load) {
 }
 
 // The product's sea and the reference's at a few points of the body.
-void compare_seas(const WaveMesh& mesh, const Run& run, const ReferenceSea& reference,
+void compare_seas(const WaveSearchBody& mesh, const Run& run, const ReferenceSea& reference,
                   std::vector<std::string>& violations) {
   SeaPoints points;
   const std::size_t vertices = mesh.mesh.surface.vertex_count();
@@ -145,7 +145,7 @@ void compare_seas(const WaveMesh& mesh, const Run& run, const ReferenceSea& refe
 }
 
 // Whether the mean wave is more than twice as long as the body.
-bool has_long_waves(const WaveMesh& mesh, const Sea& sea) {
+bool has_long_waves(const WaveSearchBody& mesh, const Sea& sea) {
   double amplitudes = 0.0;
   double slopes = 0.0;
   for (std::size_t i = 0; i < sea.prepared().size(); ++i) {
@@ -156,62 +156,66 @@ bool has_long_waves(const WaveMesh& mesh, const Sea& sea) {
 }
 
 struct Checked {
-  WaveFigures figures;
+  SearchFigures figures;
   std::vector<std::string> violations;
   ReferenceLoad truth;
 };
 
-Checked check_run(const WaveMesh& mesh, const Run& run) {
+// An error of a load, its bound, and what the truth is off.
+struct ErrorInWaves {
+  const char* what;
+  double error, bound, of_truth;
+
+  bool is_undecided() const { return of_truth > kUndecided * bound && bound > 0.0; }
+};
+
+std::array<ErrorInWaves, 3> errors_of(const WaveLoad& load, const ReferenceLoad& truth) {
+  return {{{"force", (load.force - truth.force).norm(), load.force_bound, truth.force_error},
+           {"torque", (load.torque - truth.torque).norm(), load.torque_bound, truth.torque_error},
+           {"volume", std::abs(load.volume - truth.volume), load.volume_bound, truth.volume_error}}};
+}
+
+Checked check_run(const WaveSearchBody& mesh, const Run& run) {
   Checked checked;
   const ReferenceSea sea = reference_sea_of(mesh, run);
   compare_seas(mesh, run, sea, checked.violations);
   checked.truth = truth_of(mesh, run, sea);
-  const ReferenceLoad& truth = checked.truth;
-  WaveFigures& figures = checked.figures;
-  figures.cases = 1;
-  const bool long_waves = has_long_waves(mesh, run.sea);
+  SearchFigures& figures = checked.figures;
+  const auto count = [&figures](const char* what, bool holds) { figures.counts[what] += holds ? 1 : 0; };
   bool undecided = false;
   bool within = true;
   bool capped = false;
   bool too_steep = false;
   for (const TargetLoad& of_target : run.loads) {
     const WaveLoad& load = of_target.load;
-    ++figures.loads;
+    count("loads", true);
     if (!is_finite(load)) {
       checked.violations.push_back("not finite, on " + of_target.target);
       continue;
     }
-    const double force = (load.force - truth.force).norm();
-    const double torque = (load.torque - truth.torque).norm();
-    const double volume = std::abs(load.volume - truth.volume);
-    const auto require = [&](const char* what, double error, double bound, double own_error) {
-      if (error <= bound + own_error) return;
-      checked.violations.push_back(violation(what, of_target.target, error, bound, own_error));
-    };
-    require("force", force, load.force_bound, truth.force_error);
-    require("torque", torque, load.torque_bound, truth.torque_error);
-    require("volume", volume, load.volume_bound, truth.volume_error);
-    undecided |= truth.force_error > kUndecided * load.force_bound && load.force_bound > 0.0;
-    undecided |= truth.torque_error > kUndecided * load.torque_bound && load.torque_bound > 0.0;
-    undecided |= truth.volume_error > kUndecided * load.volume_bound && load.volume_bound > 0.0;
+    const auto errors = errors_of(load, checked.truth);
+    for (const ErrorInWaves& one : errors) {
+      undecided |= one.is_undecided();
+      if (one.error <= one.bound + one.of_truth) continue;
+      checked.violations.push_back(violation(one.what, of_target.target, one.error, one.bound, one.of_truth));
+    }
     within &= load.force_bound <= run.request.tolerance * mesh.mesh.volume;
     capped |= load.capped;
     too_steep |= load.too_steep;
     if (!(load.force_bound > 0.0) || undecided) continue;
-    const auto record = [&](double error, double bound, LargestInWaves& largest) {
+    for (const ErrorInWaves& one : errors) {
       // The volume of a body that is wet everywhere is exact.
-      if (bound > 0.0 && error > bound * largest.value) largest = {error / bound, run.number};
-    };
-    record(force, load.force_bound, figures.force);
-    record(torque, load.torque_bound, figures.torque);
-    record(volume, load.volume_bound, figures.volume);
-    figures.ratios.add(load.force_bound / force);
+      if (one.bound > 0.0) figures.largest[one.what].add(one.error / one.bound, run.number);
+    }
+    figures.add_ratio(load.force_bound / errors[0].error);
   }
-  figures.undecided = static_cast<std::int64_t>(undecided);
-  figures.capped = static_cast<std::int64_t>(capped);
-  figures.too_steep = static_cast<std::int64_t>(too_steep);
-  figures.long_waves = static_cast<std::int64_t>(long_waves);
-  figures.long_within = static_cast<std::int64_t>(long_waves && within);
+  const bool long_waves = has_long_waves(mesh, run.sea);
+  count("cases", true);
+  count("undecided", undecided);
+  count("capped", capped);
+  count("too steep", too_steep);
+  count("in long waves", long_waves);
+  count("in long waves within the tolerance", long_waves && within);
   return checked;
 }
 
@@ -235,102 +239,36 @@ std::string results_text(const Run& run, const ReferenceLoad& truth) {
   return text;
 }
 
-WaveSearchStats stats_of(const Group& group) {
-  WaveSearchStats stats;
+std::string text_of(const WaveSearchBody& mesh, const Run& run, const ReferenceLoad& truth) {
+  return "  " + mesh.kind + ", volume " + format_number(mesh.mesh.volume, 9) + " m^3\n" +
+         describe(run.request) + results_text(run, truth);
+}
+
+SearchStats stats_of(const Group& group) {
+  SearchStats stats;
   for (const auto& run : group.runs) {
     const Checked checked = check_run(group.mesh, *run);
-    stats.figures[static_cast<std::size_t>(run->request.kind)] += checked.figures;
+    ++stats.cases;
+    stats.rows[std::string(to_string(run->request.kind))] += checked.figures;
     if (checked.violations.empty()) continue;
-    ++stats.failed_cases;
-    stats.failures.push_back({run->number,
-                              "  " + group.mesh.kind + ", volume " +
-                                  format_number(group.mesh.mesh.volume, 9) + " m^3\n" +
-                                  describe(run->request) + results_text(*run, checked.truth),
-                              checked.violations});
+    stats.add_violations(run->number, text_of(group.mesh, *run, checked.truth), checked.violations);
   }
   return stats;
 }
 
-template <typename Work>
-void in_parallel(std::size_t count, unsigned threads, const Work& work) {
-  std::atomic<std::size_t> next{0};
-  const auto loop = [&] {
-    for (std::size_t i = next++; i < count; i = next++) work(i);
-  };
-  std::vector<std::jthread> others;
-  for (unsigned n = 1; n < threads; ++n) others.emplace_back(loop);
-  loop();
+double percent(std::int64_t part, std::int64_t whole) {
+  return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 100.0;
 }
 
 }  // namespace
-
-void RatioHistogram::add(double ratio) {
-  const double place = std::isfinite(ratio) ? kBinsPerDecade * std::log10(ratio) : kBins - 1.0;
-  ++counts[static_cast<std::size_t>(std::clamp(place, 0.0, kBins - 1.0))];
-}
-
-RatioHistogram& RatioHistogram::operator+=(const RatioHistogram& other) {
-  for (std::size_t i = 0; i < kBins; ++i) counts[i] += other.counts[i];
-  return *this;
-}
-
-double RatioHistogram::median() const {
-  std::int64_t total = 0;
-  for (const std::int64_t count : counts) total += count;
-  std::int64_t below = 0;
-  for (std::size_t i = 0; i < kBins; ++i) {
-    below += counts[i];
-    if (2 * below >= total && total > 0) {
-      return std::pow(10.0, (static_cast<double>(i) + 0.5) / kBinsPerDecade);
-    }
-  }
-  return 0.0;
-}
-
-WaveFigures& WaveFigures::operator+=(const WaveFigures& other) {
-  cases += other.cases;
-  loads += other.loads;
-  undecided += other.undecided;
-  capped += other.capped;
-  too_steep += other.too_steep;
-  long_waves += other.long_waves;
-  long_within += other.long_within;
-  const auto keep_larger = [](LargestInWaves& largest, const LargestInWaves& candidate) {
-    if (candidate.value > largest.value) largest = candidate;
-  };
-  keep_larger(force, other.force);
-  keep_larger(torque, other.torque);
-  keep_larger(volume, other.volume);
-  ratios += other.ratios;
-  return *this;
-}
-
-std::int64_t WaveSearchStats::cases() const {
-  return total().cases;
-}
-
-WaveFigures WaveSearchStats::total() const {
-  WaveFigures sum;
-  for (const WaveFigures& of_kind : figures) sum += of_kind;
-  return sum;
-}
-
-WaveSearchStats& WaveSearchStats::operator+=(const WaveSearchStats& other) {
-  failed_cases += other.failed_cases;
-  for (std::size_t i = 0; i < figures.size(); ++i) figures[i] += other.figures[i];
-  for (const FailedWaveCase& failure : other.failures) {
-    if (failures.size() < kMaxFailures) failures.push_back(failure);
-  }
-  return *this;
-}
 
 WaveLoad product_load(const WaveBody& body, const SeaExpansion& expansion, const SeaSnapshot& sea,
                       const WaveRequest& request) {
   return wave_load(body, expansion, sea, request.pose, request.reference_B);
 }
 
-WaveSearchStats search_waves(std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned threads,
-                             const EvaluateWaves& evaluate) {
+SearchStats search_waves(std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned threads,
+                         const EvaluateWaves& evaluate) {
   std::vector<Group> groups(static_cast<std::size_t>((end - begin) / kWaveCasesPerMesh));
   const std::int64_t first = begin / kWaveCasesPerMesh;
   in_parallel(groups.size(), threads,
@@ -348,14 +286,16 @@ WaveSearchStats search_waves(std::uint64_t seed, std::int64_t begin, std::int64_
     });
   }
   force_simd_target("");
-  std::vector<WaveSearchStats> of_groups(groups.size());
-  in_parallel(groups.size(), threads, [&](std::size_t i) { of_groups[i] = stats_of(groups[i]); });
-  WaveSearchStats total;
-  for (const WaveSearchStats& stats : of_groups) total += stats;
-  return total;
+  return sum_in_parallel(groups.size(), threads, [&](std::size_t i) { return stats_of(groups[i]); });
 }
 
-WaveReplay replay_wave_case(std::uint64_t seed, std::int64_t number, const EvaluateWaves& evaluate) {
+SearchFigures check_wave_load(const WaveSearchBody& mesh, const WaveRequest& request) {
+  Run run(request, 0);
+  evaluate_run(mesh, run, simd_target(), product_load);
+  return check_run(mesh, run).figures;
+}
+
+SearchFailure replay_wave_case(std::uint64_t seed, std::int64_t number, const EvaluateWaves& evaluate) {
   const Group group = make_group(seed, number / kWaveCasesPerMesh);
   Run& run = *group.runs[static_cast<std::size_t>(number % kWaveCasesPerMesh)];
   for (const std::string& target : simd_targets()) {
@@ -364,9 +304,40 @@ WaveReplay replay_wave_case(std::uint64_t seed, std::int64_t number, const Evalu
   }
   force_simd_target("");
   Checked checked = check_run(group.mesh, run);
-  return {"  " + group.mesh.kind + ", volume " + format_number(group.mesh.mesh.volume, 9) + " m^3\n" +
-              describe(run.request) + results_text(run, checked.truth),
-          std::move(checked.violations)};
+  return {number, text_of(group.mesh, run, checked.truth), std::move(checked.violations)};
+}
+
+RandomSearch wave_search() {
+  RandomSearch one;
+  one.name = "waves";
+  one.description = "Search for a load in waves that violates its bound";
+  one.unit = kWaveCasesPerMesh;
+  one.first_column = "sea";
+  one.has_total = true;
+  one.run = [](std::uint64_t seed, std::int64_t begin, std::int64_t end, unsigned threads) {
+    return search_waves(seed, begin, end, threads, product_load);
+  };
+  one.replay = [](std::uint64_t seed, std::int64_t number) {
+    return replay_wave_case(seed, number, product_load);
+  };
+  for (const SeaKind kind : kSeaKinds) one.rows.emplace_back(to_string(kind));
+  one.columns = {count_column("cases", "cases"),
+                 largest_column("largest error / bound, force", "force"),
+                 largest_column("torque", "torque"),
+                 largest_column("volume", "volume"),
+                 {"median bound / error",
+                  [](const SearchFigures& figures) { return format_number(figures.median_ratio(), 3); }},
+                 {"long waves: bound within the tolerance",
+                  [](const SearchFigures& figures) {
+                    return format_number(percent(figures.count("in long waves within the tolerance"),
+                                                 figures.count("in long waves")),
+                                         4) +
+                           " %";
+                  }},
+                 count_column("capped", "capped"),
+                 count_column("too steep", "too steep"),
+                 count_column("undecided", "undecided")};
+  return one;
 }
 
 }  // namespace buoyancy
