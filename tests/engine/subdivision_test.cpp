@@ -127,6 +127,42 @@ TEST(Compartment, CountsByPermeabilityAndFloodedShare) {
   }
 }
 
+// What a compartment would displace has an error of its own, which flooding adds, whatever its sign.
+TEST(Compartment, AddsItsBoundsAsFarAsItIsFlooded) {
+  const std::string room = box("[1, 1.4, 1.1]", "[1.3, 0.2, -0.1]");
+  for (const std::string& water : {kWater, kSwell}) {
+    const Scene scene =
+        scene_of(water + body(1, "[4, 2, 1.5]") +
+                 "reference_point = [-0.5, 0.3, 0.2]\n[[body.compartment]]\npermeability = "
+                 "0.7\nflooded = 0\n" +
+                 room + "[[body]]\nid = 2\nreference_point = [-0.5, 0.3, 0.2]\n" + "[[body.part]]\n" + room);
+    RandomPoses random(89);
+    int compared = 0;
+    for (int i = 0; i < 60; ++i) {
+      const Pose pose = random.crossing(kHullBox, scene.water());
+      const BodyOutcome hull = evaluated(scene, 1, pose).outcome;
+      const BodyOutcome lost = evaluated(scene, 2, pose).outcome;
+      if (lost.result.volume == 0.0) continue;
+      ++compared;
+      for (const double flooded : {0.25, 1.0}) {
+        const BodyCondition condition{.flooded = {flooded}, .liquid_volumes = {}};
+        const BodyOutcome both = evaluated(scene, 1, pose, &condition).outcome;
+        const double share = 0.7 * flooded;
+        EXPECT_NEAR(both.result.force_error_bound,
+                    hull.result.force_error_bound + share * lost.result.force_error_bound,
+                    1e-9 * both.result.force_error_bound);
+        EXPECT_NEAR(both.result.torque_error_bound,
+                    hull.result.torque_error_bound + share * lost.result.torque_error_bound,
+                    1e-9 * both.result.torque_error_bound);
+        EXPECT_NEAR(both.in_waves.volume_error_bound,
+                    hull.in_waves.volume_error_bound + share * lost.in_waves.volume_error_bound,
+                    1e-9 * both.in_waves.volume_error_bound);
+      }
+    }
+    EXPECT_GT(compared, 30);
+  }
+}
+
 // Lost buoyancy and added weight are two views of the same water.
 TEST(Compartment, PullsAsTheWaterInIt) {
   const Scene scene =
@@ -158,6 +194,33 @@ TEST(Tank, PullsWithItsWeightAlsoInTheAir) {
   EXPECT_LE((result.torque_W - Vec3(-2.0, 0.5, 0.0).cross(Vec3(0, 0, -weight))).norm(), 1e-12 * weight);
   EXPECT_GT(result.force_error_bound, 0.0);
   EXPECT_LT(result.torque_error_bound, 1e-11 * weight);
+}
+
+// Rounding of the weight and of its lever, of the tank's volume, of which the liquid is a share, and of the
+// volume under the surface that was found. Each is far below the others in one of the cases.
+TEST(Tank, AddsTheBoundsOfItsWeight) {
+  constexpr double kEpsilon = 2.220446049250313e-16;
+  for (const std::string& shape :
+       {box("[1, 1.2, 0.8]", "[-1, 0.5, 0]"), box("[1, 1, 0.00001]", "[-1, 0.5, 0.3]"),
+        box("[0.9, 1.1, 0.7]", "[-1, 0.5, 0.3]") + "orientation = [0.9, 0.3, 0.1, 0.2]\n"}) {
+    for (const double fill : {0.3, 1.0}) {
+      const Scene scene = scene_of(kWater + body(1, "[4, 2, 1.5]") +
+                                   "reference_point = [30, -40, 7]\n[[body.tank]]\ndensity = 800.0\nfill = " +
+                                   format_shortest(fill) + "\n" + shape);
+      const Pose high{.p_WB = {5.0, 6.0, 500.0}, .q_WB = {0.8, 0.3, -0.4, 0.2}};
+      const BuoyancyResult result = evaluated(scene, 1, high).outcome.result;
+      const BodyTank& given = scene.find(1)->subdivision->tanks[0];
+      const Tank tank = with_liquid(given, given.liquid_volume);
+      const Vec3 up_B = high.q_WB.normalized().conjugate() * Vec3::UnitZ();
+      const double weight = 800.0 * 9.80665 * tank.liquid_volume;
+      const double of_mesh = 800.0 * 9.80665 * tank.mesh->rounding_bound();
+      const double of_level = 800.0 * 9.80665 * tank_liquid(tank, up_B).volume_error;
+      const double lever = tank.mesh->max_lever_arm(Vec3(30, -40, 7));
+      EXPECT_NEAR(result.force_error_bound / (4.0 * kEpsilon * weight + of_mesh), 1.0, 1e-9);
+      EXPECT_NEAR(result.torque_error_bound / ((16.0 * kEpsilon * weight + of_mesh + of_level) * lever), 1.0,
+                  1e-9);
+    }
+  }
 }
 
 // The share is of the tank as it is, whose volume rounding makes a little wrong.

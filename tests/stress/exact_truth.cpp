@@ -5,38 +5,23 @@
 
 #include "hydrostatics/triangle_clip.h"
 #include "tests/hydrostatics/exact_oracle.h"
+#include "tests/hydrostatics/rational.h"
 
 namespace buoyancy {
-
-Truth true_result(const TriangleMesh& mesh, const Pose& pose, const Water& water, const Vec3& reference_B) {
-  const auto exact = exact_displacement<Rational>(mesh, pose, water);
-  return {exact.volume, exact.volume * water.up_W.cast<Rational>(),
-          exactly_in_world<Rational>(pose, exact.torque(reference_B))};
-}
-
-double distance(const Vec3& found, const Vec3T<Rational>& truth) {
-  const Vec3T<Rational> difference = found.cast<Rational>() - truth;
-  return Vec3(difference.x().convert_to<double>(), difference.y().convert_to<double>(),
-              difference.z().convert_to<double>())
-      .norm();
-}
-
-double distance(double found, const Rational& truth) {
-  return std::abs(Rational(Rational(found) - truth).convert_to<double>());
-}
 
 void check_result(StressCase& stress, const StressedBody& body, const BuoyancyResult& result,
                   const Truth& truth, const Vec3& reference_B, double factor, const std::string& where) {
   stress.require(result.status == BuoyancyStatus::kOk, "the status of " + where);
-  stress.check(distance(result.volume, truth.volume), factor * body.volume_tolerance(), "volume, " + where);
-  stress.check(distance(result.force_W, truth.force_W), factor * body.volume_tolerance(), "force, " + where);
-  stress.check(distance(result.torque_W, truth.torque_W), factor * body.torque_tolerance(reference_B),
-               "torque, " + where);
+  const double gate = factor * body.volume_tolerance();
+  const double torque_gate = factor * body.torque_tolerance(reference_B);
+  stress.check(truth.volume_error(result.volume, gate), gate, "volume, " + where);
+  stress.check(truth.force_error(result.force_W, gate), gate, "force, " + where);
+  stress.check(truth.torque_error(result.torque_W, torque_gate), torque_gate, "torque, " + where);
 }
 
 void check_exactly(StressCase& stress, const StressedBody& body, const Pose& pose, const Water& water,
                    const Vec3& reference_B, const std::string& where, double factor) {
-  const Truth truth = true_result(body.source, pose, water, reference_B);
+  const Truth truth({&body.source}, pose, water, reference_B);
   visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
     check_result(stress, body, buoyancy(solver, pose, water, reference_B), truth, reference_B,
                  factor * depth_factor(solver, pose, water), body.name + ", " + method + where);

@@ -1,11 +1,10 @@
-// The true result of one pose in rational arithmetic, in world axes, and the distance of a result from it;
-// nothing is rounded before the difference is taken.
+// Comparison of results with the truth, and the waterplane in rational arithmetic.
 #pragma once
 
 #include <limits>
 #include <string>
 
-#include "tests/hydrostatics/rational.h"
+#include "tests/hydrostatics/truth.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"
 
@@ -13,19 +12,8 @@ namespace buoyancy {
 
 inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-struct Truth {
-  Rational volume;           // [m^3]
-  Vec3T<Rational> force_W;   // [m^3]
-  Vec3T<Rational> torque_W;  // [m^4], about the reference point
-};
-
-Truth true_result(const TriangleMesh& mesh, const Pose& pose, const Water& water, const Vec3& reference_B);
-
-double distance(const Vec3& found, const Vec3T<Rational>& truth);
-
-double distance(double found, const Rational& truth);
-
-// Checks one result against the truth: volume and force within factor G_V, torque within factor G_tau.
+// Checks one result against the truth, in water of density times gravity 1: volume and force within factor
+// G_V, torque within factor G_tau.
 void check_result(StressCase& stress, const StressedBody& body, const BuoyancyResult& result,
                   const Truth& truth, const Vec3& reference_B, double factor, const std::string& where);
 

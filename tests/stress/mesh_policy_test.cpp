@@ -70,7 +70,7 @@ TEST(StressMeshPolicy, ReorientsAndReportsInsideOutMeshes) {
       Water water = kStressWater;
       const Pose pose = stressed_pose(random, meant, i, water);
       const Vec3 reference_B = reference_near(random, meant);
-      const Truth truth = true_result(meant.source, pose, water, reference_B);
+      const Truth truth({&meant.source}, pose, water, reference_B);
       visit_exact_solvers(accepted.mesh, [&](const std::string& method, const Solver& solver) {
         check_result(stress, meant, buoyancy(solver, pose, water, reference_B), truth, reference_B,
                      depth_factor(solver, pose, water), one.name + ", " + method);
@@ -209,11 +209,7 @@ TEST(StressMeshPolicy, CountsSelfIntersectionTwice) {
     Water water = kStressWater;
     const Pose pose = stressed_pose(random, body, i, water);
     const Vec3 reference_B = reference_near(random, body);
-    Truth sum = true_result(crate, pose, water, reference_B);
-    const Truth more = true_result(other, pose, water, reference_B);
-    sum.volume += more.volume;
-    sum.force_W += more.force_W;
-    sum.torque_W += more.torque_W;
+    const Truth sum({&crate, &other}, pose, water, reference_B);
     visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
       check_result(stress, body, buoyancy(solver, pose, water, reference_B), sum, reference_B,
                    depth_factor(solver, pose, water), method);

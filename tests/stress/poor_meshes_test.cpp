@@ -238,7 +238,7 @@ TEST(StressPoorMeshes, MatchesWeldedMeshForUnweldedStl) {
       Water water = kStressWater;
       const Pose pose = stressed_pose(random, original, i, water);
       const Vec3 reference_B = reference_near(random, original);
-      const Truth truth = true_result(original.source, pose, water, reference_B);
+      const Truth truth({&original.source}, pose, water, reference_B);
       for (const StressedBody* body : {&unwelded, &welded}) {
         visit_exact_solvers(body->mesh, [&](const std::string& method, const Solver& solver) {
           check_result(stress, original, buoyancy(solver, pose, water, reference_B), truth, reference_B, 1.0,

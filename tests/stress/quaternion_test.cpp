@@ -88,19 +88,18 @@ TEST(StressQuaternions, NormalisesNormsWithinThousandthOfOne) {
   for (int i = 0; i < tries(60); ++i) {
     Pose pose = random.crossing(box.box, water);
     pose.q_WB = scaled(pose.q_WB, norms[static_cast<std::size_t>(i) % norms.size()]);
-    const Truth truth = true_result(box.source, pose, water, Vec3::Zero());
+    const Truth truth({&box.source}, pose, water, Vec3::Zero());
     const std::int64_t before = handler.counters().quaternions_normalised;
     const WrenchResponse response =
         response_of(handler, {state_of(kBox, pose), state_of(kHierarchicalBox, pose)});
     for (const BodyWrench& wrench : response.bodies) {
       const std::string where = box.name + ", body " + std::to_string(wrench.body_id);
       stress.require(wrench.status == BodyStatus::kOk, "the status of " + where);
-      stress.check(distance(wrench.submerged_volume, truth.volume), box.volume_tolerance(),
-                   "volume, " + where);
-      stress.check(distance(to_vec3(wrench.force) / kWeight, truth.force_W), box.volume_tolerance(),
+      stress.check(truth.volume_error(wrench.submerged_volume), box.volume_tolerance(), "volume, " + where);
+      stress.check(truth.force_error(to_vec3(wrench.force) / kWeight), box.volume_tolerance(),
                    "force, " + where);
-      stress.check(distance(to_vec3(wrench.torque) / kWeight, truth.torque_W),
-                   box.torque_tolerance(Vec3::Zero()), "torque, " + where);
+      stress.check(truth.torque_error(to_vec3(wrench.torque) / kWeight), box.torque_tolerance(Vec3::Zero()),
+                   "torque, " + where);
     }
     const bool counted = std::abs(pose.q_WB.norm() - 1.0) > 1.1e-6;
     if (counted) stress.require(handler.counters().quaternions_normalised == before + 2, "counted");
