@@ -145,24 +145,6 @@ double frequency_of(double length, double depth = kInfinity) {
 
 constexpr WavePressure kPressures[] = {WavePressure::kWheeler, WavePressure::kHydrostatic};
 
-// Draws poses across the surface, up to `farthest` from the origin along both axes, and checks the loads
-// there within these tolerances, in turn.
-void check_across(StressCase& stress, RandomPoses& random, const SeaDescription& description,
-                  const std::vector<double>& tolerances, double farthest,
-                  const std::vector<WaveBodyUnderTest>& bodies = wave_bodies(),
-                  const Water& water = kStressWater, std::int64_t utime = 0) {
-  const Sea sea = Sea::make(description, water).value();
-  const SeaSnapshot snapshot(sea, utime);
-  for (const WaveBodyUnderTest& body : bodies) {
-    for (const double tolerance : tolerances) {
-      const double x1 = random.uniform(-farthest, farthest);
-      const double x2 = random.uniform(-farthest, farthest);
-      check_by_reference(stress,
-                         {body, sea, utime, pose_across(random, body, sea, snapshot, x1, x2), tolerance});
-    }
-  }
-}
-
 TEST(StressWaves, TakesAmplitudesOfZero) {
   StressCase stress("waves: amplitudes of 0, before a ramp begins", "hierarchical in still water",
                     "the load's bound");
@@ -221,7 +203,14 @@ TEST(StressWaves, TakesVeryLongWaves) {
   StressCase stress("waves: 1e6 m long, 2,000 m high", "adaptive integration of the sea", "the load's bound");
   RandomPoses random(4);
   for (const WavePressure pressure : kPressures) {
-    check_across(stress, random, sea_of({{1e3, frequency_of(1e6), 30.0, 70.0}}, pressure), {1e-2, 1e-5}, 1e5);
+    const Sea sea = Sea::make(sea_of({{1e3, frequency_of(1e6), 30.0, 70.0}}, pressure), kStressWater).value();
+    const SeaSnapshot snapshot(sea);
+    for (const WaveBodyUnderTest& body : wave_bodies()) {
+      for (const double tolerance : {1e-2, 1e-5}) {
+        const Pose pose = pose_across(random, body, sea, snapshot, 1e5 * random.uniform(-1.0, 1.0), 2.0);
+        check_by_reference(stress, {body, sea, 0, pose, tolerance});
+      }
+    }
   }
 }
 
@@ -231,10 +220,21 @@ TEST(StressWaves, TakesBodiesFarAwayToday) {
   RandomPoses random(5);
   Water tilted = kStressWater;
   tilted.up_W = Vec3(0.3, -0.5, 0.7).normalized();
-  const SeaDescription sea =
-      sea_of({{0.1, frequency_of(3.0), 30.0, 70.0}, {0.05, frequency_of(1.5), -110.0, 10.0}});
   for (const Water& water : {kStressWater, tilted}) {
-    check_across(stress, random, sea, {1e-3, 1e-5}, 1e6, wave_bodies(), water, 1'790'000'000'123'456);
+    const Sea sea =
+        Sea::make(sea_of({{0.1, frequency_of(3.0), 30.0, 70.0}, {0.05, frequency_of(1.5), -110.0, 10.0}}),
+                  water)
+            .value();
+    const std::int64_t utime = 1'790'000'000'123'456;
+    SeaSnapshot snapshot(sea);
+    snapshot.set_time(utime);
+    for (const WaveBodyUnderTest& body : wave_bodies()) {
+      for (const double tolerance : {1e-3, 1e-5}) {
+        const Pose pose = pose_across(random, body, sea, snapshot, 1e6 * random.uniform(-1.0, 1.0),
+                                      1e6 * random.uniform(-1.0, 1.0));
+        check_by_reference(stress, {body, sea, utime, pose, tolerance});
+      }
+    }
   }
 }
 
@@ -244,9 +244,18 @@ TEST(StressWaves, TakesWaterHardlyDeeperThanItsTroughs) {
   RandomPoses random(6);
   for (const double excess : {1e-2, 1e-6}) {
     const double depth = 0.4 * (1.0 + excess);
-    const WaveComponents waves{{0.3, frequency_of(8.0, depth), 30.0, 70.0},
-                               {0.1, frequency_of(5.0, depth), -110.0, 10.0}};
-    check_across(stress, random, sea_of(waves, WavePressure::kWheeler, depth), {1e-3, 1e-3}, 9.0);
+    const Sea sea = Sea::make(sea_of({{0.3, frequency_of(8.0, depth), 30.0, 70.0},
+                                      {0.1, frequency_of(5.0, depth), -110.0, 10.0}},
+                                     WavePressure::kWheeler, depth),
+                              kStressWater)
+                        .value();
+    const SeaSnapshot snapshot(sea);
+    for (const WaveBodyUnderTest& body : wave_bodies()) {
+      for (int turn = 0; turn < 2; ++turn) {
+        const Pose pose = pose_across(random, body, sea, snapshot, random.uniform(-9.0, 9.0), turn);
+        check_by_reference(stress, {body, sea, 0, pose, 1e-3});
+      }
+    }
   }
 }
 
@@ -254,8 +263,15 @@ TEST(StressWaves, TakesSteepSeas) {
   StressCase stress("waves: too steep for linear theory (ak 1.2)", "adaptive integration of the sea",
                     "the load's bound");
   RandomPoses random(7);
-  check_across(stress, random, sea_of({{1.2 * 3.0 / (2.0 * kPi), frequency_of(3.0), 30.0, 70.0}}),
-               {1e-3, 1e-3, 1e-3}, 9.0);
+  const Sea sea =
+      Sea::make(sea_of({{1.2 * 3.0 / (2.0 * kPi), frequency_of(3.0), 30.0, 70.0}}), kStressWater).value();
+  const SeaSnapshot snapshot(sea);
+  for (const WaveBodyUnderTest& body : wave_bodies()) {
+    for (int turn = 0; turn < 3; ++turn) {
+      const Pose pose = pose_across(random, body, sea, snapshot, random.uniform(-9.0, 9.0), turn);
+      check_by_reference(stress, {body, sea, 0, pose, 1e-3});
+    }
+  }
 }
 
 TEST(StressWaves, TakesDegenerateTrianglesAndNeedles) {
@@ -278,14 +294,17 @@ TEST(StressWaves, TakesDegenerateTrianglesAndNeedles) {
   }
   bodies.emplace_back("needle", make_shape(BoxShape{.size = {8192, 1, 1}, .segments = {40, 1, 1}}));
   bodies.emplace_back("plate", make_shape(BoxShape{.size = {1, 1, 1e-3}, .segments = {6, 6, 1}}));
-  for (WaveBodyUnderTest& body : bodies) {
+  for (const WaveBodyUnderTest& body : bodies) {
     const double size = body.mesh.diagonal;
-    std::vector<WaveBodyUnderTest> alone;
-    alone.push_back(std::move(body));
-    check_across(stress, random,
-                 sea_of({{0.02 * size, frequency_of(3.0 * size), 30.0, 70.0},
-                         {0.01 * size, frequency_of(1.5 * size), -110.0, 10.0}}),
-                 {1e-2, 1e-2, 1e-2}, 9.0, alone);
+    const Sea sea = Sea::make(sea_of({{0.02 * size, frequency_of(3.0 * size), 30.0, 70.0},
+                                      {0.01 * size, frequency_of(1.5 * size), -110.0, 10.0}}),
+                              kStressWater)
+                        .value();
+    const SeaSnapshot snapshot(sea);
+    for (int turn = 0; turn < 3; ++turn) {
+      const Pose pose = pose_across(random, body, sea, snapshot, random.uniform(-9.0, 9.0), turn);
+      check_by_reference(stress, {body, sea, 0, pose, 1e-2});
+    }
   }
 }
 
@@ -293,7 +312,12 @@ TEST(StressWaves, BoundsHoldWhereTolerancesCannotBeMet) {
   StressCase stress("waves: a tolerance of 1e-9, which float32 meshes cannot meet",
                     "adaptive integration of the sea", "the load's bound");
   RandomPoses random(9);
-  check_across(stress, random, sea_of({{0.1, frequency_of(6.0), 30.0, 70.0}}), {1e-9}, 2.0);
+  const Sea sea = Sea::make(sea_of({{0.1, frequency_of(6.0), 30.0, 70.0}}), kStressWater).value();
+  const SeaSnapshot snapshot(sea);
+  for (const WaveBodyUnderTest& body : wave_bodies()) {
+    const Pose pose = pose_across(random, body, sea, snapshot, 1.0, 2.0);
+    check_by_reference(stress, {body, sea, 0, pose, 1e-9});
+  }
 }
 
 }  // namespace
