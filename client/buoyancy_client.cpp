@@ -19,6 +19,7 @@
 #include "cli/progress_bar.h"
 #include "client/client.h"
 #include "scene/mesh_warnings.h"
+#include "scene/scene_fingerprint.h"
 #include "simulation/run_csv_writer.h"
 #include "simulation/run_summary.h"
 #include "simulation/run_warnings.h"
@@ -96,6 +97,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   add_retries_option(app, arguments.retry_policy.max_retries, "the run fails");
   add_states_channel_option(app, arguments.channel.states_channel);
   add_wrenches_channel_option(app, arguments.channel.wrenches_channel);
+  add_status_channel_option(app, arguments.channel.status_channel);
   add_condition_channel_option(app, arguments.channel.condition_channel)
       ->description("LCM channel for the events of the scene (body_condition_t)");
   app.add_flag("--no-spin", arguments.no_spin,
@@ -139,7 +141,9 @@ int report(const Error& error, int exit_code) {
 Expected<SimulationClient> make_client(const Arguments& arguments, const Scene& scene, std::size_t bodies,
                                        std::optional<Warning>& warning) {
   if (arguments.embedded) return SimulationClient(InProcessClient(scene));
-  Expected<LcmRequestChannel> channel = LcmRequestChannel::open(arguments.channel);
+  ChannelOptions options = arguments.channel;
+  options.scene_fingerprint = scene_fingerprint(scene);
+  Expected<LcmRequestChannel> channel = LcmRequestChannel::open(options);
   if (!channel) return make_error(channel.error());
   Expected<std::optional<Warning>> reserved = channel->reserve(bodies);
   if (!reserved) return make_error(reserved.error());
@@ -200,6 +204,7 @@ int simulate(Arguments arguments) {
   warn(received_sea_warning(*simulation));
   LatencyMonitor latency;
   BedMonitor bed;
+  bool has_other_scene = false;
 
   const Clock::time_point start = Clock::now();
   Expected<RunOutcome> outcome = RunOutcome::kCompleted;
@@ -212,6 +217,11 @@ int simulate(Arguments arguments) {
           progress.clear();
           warn(std::move(warning));
         }
+      }
+      if (const Warning* const other_scene = scene_warning(*client); other_scene != nullptr && !has_other_scene) {
+        has_other_scene = true;
+        progress.clear();
+        warn(*other_scene);
       }
       for (Warning& warning : bed.update(now)) {
         progress.clear();

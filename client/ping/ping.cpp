@@ -19,8 +19,8 @@ namespace {
 
 // Requests in a row without a reply after which the run ends; before the first reply: one.
 constexpr std::int64_t kMaxUnansweredInARow = 3;
-// How long to look out for a status, which comes once a second, from the start of the run. Where all agrees,
-// nobody waits for it.
+// How long to look out for a status, which comes when a session begins and once a second, from the start of the
+// run.
 constexpr std::chrono::seconds kStatusTimeout{2};
 constexpr std::int64_t kTimeBetweenRequests = 100'000;  // [us], simulated
 
@@ -254,6 +254,10 @@ class Run {
                                 std::to_string(task_.count) + " requests");
     }
     if (!result_.checks.all_passed()) find_causes(link);
+    if (result_.checks.replies() > 0) {
+      link.wait_for_description(false, start_ + kStatusTimeout, signals_);
+      std::ranges::move(service_warnings(task_.scene, link.service()), std::back_inserter(result_.warnings));
+    }
     result_.link = link.stats();
     result_.service = link.service();
   }

@@ -5,6 +5,7 @@
 
 #include "base/format.h"
 #include "messages/sea_state.h"
+#include "scene/scene_fingerprint.h"
 #include "transport/udpm_url.h"
 
 namespace buoyancy::ping {
@@ -57,6 +58,9 @@ std::vector<std::string> causes_from_service(const Scene& scene, const ServiceIn
                        pluralize(status.scene_bodies, "body", "bodies") + ", here " +
                        pluralize(static_cast<std::int64_t>(scene.bodies().size()), "body", "bodies"));
     }
+    if (status.scene_fingerprint != scene_fingerprint(scene)) {
+      causes.push_back("the service has another scene than this file, or other meshes: " + status.scene);
+    }
     if (status.version != BUOYANCY_VERSION) {
       causes.push_back("the service is version " + status.version + ", this program " BUOYANCY_VERSION);
     }
@@ -78,6 +82,43 @@ std::vector<std::string> causes_from_service(const Scene& scene, const ServiceIn
     causes.emplace_back("the service publishes no sea: its scene may have no waves");
   }
   return causes;
+}
+
+std::vector<Warning> service_warnings(const Scene& scene, const ServiceInfo& service) {
+  std::vector<Warning> warnings;
+  if (!service.status) return warnings;
+  const ServiceStatus& status = *service.status;
+  const std::string subject = "the service (instance " + std::to_string(status.instance_id) + ")";
+  const std::string log = "Its log names session, body and likely cause";
+  const std::size_t others = std::max(static_cast<std::size_t>(std::max<std::int64_t>(status.other_services, 0)),
+                                      service.instance_ids.size() - 1);
+  if (others > 0) {
+    warnings.push_back({subject, pluralize(static_cast<std::int64_t>(others), "other service", "other services") +
+                                     " on the channel of its status",
+                        "one service", "another one was not stopped: every request gets two responses",
+                        "Stop it, or give each an LCM URL or channels of its own"});
+  }
+  if (status.scene_fingerprint != scene_fingerprint(scene)) {
+    warnings.push_back({subject, "its scene " + status.scene + " is not that of " + scene.name(), "the same scene",
+                        "another file, or one that was changed since the service loaded it",
+                        "Give both the same file, and reload the service with SIGHUP after a change"});
+  }
+  const ServiceCounters& counters = status.counters;
+  if (counters.motions_contradicting > 0) {
+    warnings.push_back({subject,
+                        pluralize(counters.motions_contradicting, "velocity that contradicts",
+                                  "velocities that contradict") +
+                            " the motion of its body, since its start",
+                        "velocities in the world frame, in m/s and rad/s", "a simulator uses another frame or unit",
+                        log});
+  }
+  if (counters.quaternions_xyzw > 0) {
+    warnings.push_back({subject,
+                        pluralize(counters.quaternions_xyzw, "session", "sessions") +
+                            " with quaternions that look like x, y, z, w, since its start",
+                        "the order w, x, y, z", "a simulator sends its own order", log});
+  }
+  return warnings;
 }
 
 std::string cause_of_silence(const LinkOptions& options, const std::string& url, const ServiceInfo& service) {

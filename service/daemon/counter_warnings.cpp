@@ -129,6 +129,13 @@ std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts&
   return warnings;
 }
 
+LogEvent to_log_event(const MotionFinding& finding) {
+  const char* const message = finding.contradictions == 0 ? "sessions whose quaternions look like x, y, z, w"
+                              : finding.is_angular        ? "angular velocities that contradict the motion"
+                                                          : "linear velocities that contradict the motion";
+  return {message, 1, finding.warning().message()};
+}
+
 std::optional<LogEvent> missing_velocities(const PoseChannel& pose, const Scene& scene, std::int64_t count) {
   const Body* const body = scene.find(pose.body_id);
   if (body == nullptr || body->hydrodynamics == nullptr) return std::nullopt;

@@ -22,6 +22,9 @@ std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts&
                                      const BufferLimit& receive_buffer_limit);
 
 // The event of `count` poses without velocities on a channel; nullopt: its body needs none in this scene.
+// One of a few messages, with the finding as its detail.
+LogEvent to_log_event(const MotionFinding& finding);
+
 std::optional<LogEvent> missing_velocities(const PoseChannel& pose, const Scene& scene, std::int64_t count);
 
 // One line of totals: "1200 requests: 1198 computed, 2 retries, ...".

@@ -22,6 +22,7 @@
 #include "messages/sea_state.h"
 #include "messages/status.h"
 #include "scene/mesh_warnings.h"
+#include "scene/scene_fingerprint.h"
 #include "service/daemon/budgets.h"
 #include "service/daemon/counter_warnings.h"
 #include "service/daemon/message_sizes.h"
@@ -105,6 +106,7 @@ Daemon::Daemon(std::unique_ptr<const Scene> scene, LcmConnection connection, Ser
       waiting_(kMaxWaiting, kMaxWaitingBytes),
       start_(seconds_now()),
       instance_id_(random_id()),
+      scene_fingerprint_(scene_fingerprint(*scene_)),
       instances_(instance_id_),
       reported_without_velocities_(poses_.channels().size()) {
   arrivals_.reserve(RequestHandler::kMaxInProgress);
@@ -387,13 +389,15 @@ void Daemon::handle(Bytes request, double arrival, bool may_wait) {
   if (step == Step::kRejected) return;
   if (step == Step::kBusy && may_wait) return wait(request, arrival);
   if (step == Step::kBusy) return handler_.record_busy();
-  if (counters.sessions + counters.sessions_evicted != sessions_before &&
-      spdlog::should_log(spdlog::level::debug)) {
+  const bool is_new = counters.sessions + counters.sessions_evicted != sessions_before;
+  if (is_new && spdlog::should_log(spdlog::level::debug)) {
     const RequestId id = peek_request_id(request).value();
     details_.add({"sessions started", 1, fmt::format("session {} with seq {}", id.session_id, id.seq)},
                  seconds_now());
   }
-  if (step == Step::kAnswered) return send_reply(arrival);
+  if (step == Step::kAnswered) send_reply(arrival);
+  if (is_new) publish_status_to_new_session();
+  if (step == Step::kAnswered) return;
   const std::int64_t session_id = peek_request_id(request).value().session_id;
   const bool is_retry = std::ranges::find(arrivals_, session_id, &Arrival::session_id) != arrivals_.end();
   if (!is_retry) arrivals_.push_back({session_id, arrival});
@@ -483,6 +487,7 @@ void Daemon::end_reload() {
     ++reloads_;
     const std::size_t bodies_before = scene_->bodies().size();
     loader_.release(std::exchange(scene_, std::move(**loaded)));
+    scene_fingerprint_ = scene_fingerprint(*scene_);
     spdlog::info("reloaded: {} (before: {}) from {}", format_body_count(scene_->bodies()), bodies_before,
                  scene_->name());
     guard([this] {
@@ -501,10 +506,17 @@ void Daemon::prepare_for_scene() {
   publish_sea();
 }
 
+// Its client learns at once which scene it talks to.
+void Daemon::publish_status_to_new_session() {
+  constexpr double kMinInterval = 0.1;  // [s]: sessions may be begun as fast as requests
+  if (seconds_now() - last_status_ >= kMinInterval) publish_status();
+}
+
 void Daemon::publish_status() {
   const ServiceCounters& counters = handler_.counters();
   const DropCounts drops = connection_.drop_counts();
   const double now = seconds_now();
+  last_status_ = now;
   encode(ServiceStatus{.utime = utime_now(),
                        .instance_id = instance_id_,
                        .version = BUOYANCY_VERSION,
@@ -515,6 +527,8 @@ void Daemon::publish_status() {
                        .simd_target = simd_target_from_name(simd_target()),
                        .threads = static_cast<std::int32_t>(handler_.thread_count()),
                        .scene_bodies = static_cast<std::int32_t>(scene_->bodies().size()),
+                       .scene_fingerprint = scene_fingerprint_,
+                       .other_services = static_cast<std::int64_t>(instances_.count()),
                        .reloads = reloads_,
                        .reloads_failed = reloads_failed_,
                        .send_failures = send_failures_,
@@ -537,13 +551,15 @@ void Daemon::publish_status() {
     warnings_.add(warning, now);
   }
   warn_of_missing_velocities(now);
+  for (const MotionFinding& finding : handler_.take_findings()) warnings_.add(to_log_event(finding), now);
   for (const std::string& line : warnings_.drain(now)) spdlog::warn("{}", line);
   for (const std::string& line : details_.drain(now)) spdlog::debug("{}", line);
-  for (const std::int64_t other : instances_.take_new()) {
+  for (const InstanceMonitor::Instance& other : instances_.take_new()) {
     spdlog::warn(
-        "another buoyancyd (instance {}) publishes on {}: if it also receives {}, every request gets two "
+        "another buoyancyd (instance {}, {}) publishes on {}: if it also receives {}, every request gets two "
         "responses. Stop one of the two, or give each its own channels",
-        other, channels_.status, channels_.states);
+        other.id, other.scene_fingerprint == scene_fingerprint_ ? "the same scene" : "another scene",
+        channels_.status, channels_.states);
   }
   reported_ = counters;
   reported_drops_ = drops;

@@ -10,10 +10,10 @@ void InstanceMonitor::observe(Bytes message) {
   const std::int64_t id = status_.instance_id;
   if (id == own_ || std::ranges::find(known_, id) != known_.end()) return;
   known_.push_back(id);
-  new_.push_back(id);
+  new_.push_back({id, status_.scene_fingerprint});
 }
 
-std::vector<std::int64_t> InstanceMonitor::take_new() {
+std::vector<InstanceMonitor::Instance> InstanceMonitor::take_new() {
   return std::exchange(new_, {});
 }
 

@@ -20,13 +20,19 @@ class InstanceMonitor {
   // message: received on the status channel. Own status messages and invalid ones are ignored.
   void observe(Bytes message);
 
-  // The instance_id of each instance first observed since the last call.
-  std::vector<std::int64_t> take_new();
+  struct Instance {
+    std::int64_t id = 0;
+    std::int64_t scene_fingerprint = 0;  // when it was first observed
+  };
+  // Those first observed since the last call.
+  std::vector<Instance> take_new();
+  // All that were observed, at most kMaxInstances.
+  std::size_t count() const { return known_.size(); }
 
  private:
   std::int64_t own_;
   std::vector<std::int64_t> known_;
-  std::vector<std::int64_t> new_;
+  std::vector<Instance> new_;
   ServiceStatus status_;  // reused
 };
 

@@ -53,6 +53,7 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, Received& rec
   }
   if (role.request) {
     batch.add_request(event.timestamp, event.bytes, {});
+    summary.motion.add(event.bytes, task.scene);
     if (!event.channel.empty()) {
       if (const auto id = peek_request_id(event.bytes)) summary.requests->add(id->session_id, id->seq);
     }
@@ -60,6 +61,7 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, Received& rec
   }
   if (!role.pose) return;
   if (const auto request = task.poses.make_request(*role.pose, event.bytes)) {
+    summary.motion.add(*request, task.scene);
     batch.add_request(event.timestamp, *request, task.poses.channels()[*role.pose].force_torque_channel);
   } else {
     batch.add_rejected_pose(event.timestamp, request.error());

@@ -109,6 +109,9 @@ std::string summary_text(const ReplaySummary& summary, const ReplayComparison* c
                         counters.conditions_received + counters.conditions_rejected);
     line("rejected", counters.conditions_rejected);
   }
+  if (const std::size_t contradictions = summary.motion.findings().size(); contradictions > 0) {
+    text += fmt::format("{:<22}{:>12}\n", "velocities in doubt", contradictions);
+  }
   if (summary.copied > 0) text += fmt::format("{:<22}{:>12}\n", "events copied", summary.copied);
   text += fmt::format("{:<22}{:>12}\n", "corrupt sections", summary.corrupt_sections);
   text += fmt::format("{:<22}{:>12.3f}\n", "seconds", summary.seconds);
@@ -169,6 +172,9 @@ std::string summary_json(const ReplaySummary& summary, const ReplayComparison* c
   nlohmann::ordered_json json = summary_to_json(summary);
   if (summary.requests && summary.requests->missing() > 0)
     json["requests_not_recorded"] = summary.requests->missing();
+  for (const MotionFinding& finding : summary.motion.findings()) {
+    json["velocities_in_doubt"].push_back(finding.warning().message());
+  }
   if (comparison != nullptr) json["compared"] = comparison_json(*comparison);
   return json.dump(2) + "\n";
 }

@@ -39,6 +39,10 @@ const BodiesLoads& Client::loads() const {
   return std::visit([](const auto& client) -> const BodiesLoads& { return client.loads(); }, client_);
 }
 
+const Warning* Client::scene_warning() const {
+  return std::visit([](const auto& client) { return client.scene_warning(); }, client_);
+}
+
 ClientStats Client::statistics() const {
   return std::visit([](const auto& client) -> ClientStats { return client.statistics(); }, client_);
 }

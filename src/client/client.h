@@ -49,6 +49,10 @@ class Client {
   // the next request. Precondition: ClientOptions::channel.wait_for_loads; there are none otherwise.
   const BodiesLoads& loads() const;
 
+  // A service that has another scene than the caller, if ChannelOptions::scene_fingerprint is set; nullptr: none
+  // has been seen. The service states its scene when a session begins, and once a second.
+  const Warning* scene_warning() const;
+
   ClientStats statistics() const;
 
  private:

@@ -35,6 +35,8 @@ class FreeRunningClient {
   Expected<const WrenchResponse*> request(const BorrowedRequest& request);
   // Of the response that was returned last, see ChannelOptions::wait_for_loads.
   const BodiesLoads& loads() const { return channel_.latest_loads(); }
+  // See LcmRequestChannel::scene_warning().
+  const Warning* scene_warning() const { return channel_.scene_warning(); }
   ClientStats statistics() const;
 
  private:

@@ -6,6 +6,7 @@
 #include <poll.h>
 
 #include "base/format.h"
+#include "base/vec3.h"
 
 namespace buoyancy {
 namespace {
@@ -29,6 +30,7 @@ void LcmRequestChannel::Inbox::receive(Bytes bytes) {
   }
   const RequestId& id = incoming.id;
   if (id.session_id != session_id || id.seq > last_sent) return;
+  if (has_response && id.seq == latest.id.seq) compare_with_latest();
   if (!needs_loads || !is_newer(id)) arrivals.push_back({id.seq, Clock::now()});
   if (!is_newer(id)) return;
   if (!needs_loads) {
@@ -52,6 +54,32 @@ void LcmRequestChannel::Inbox::receive_loads(Bytes bytes) {
   loads_seq = id.seq;
   std::swap(loads, incoming_loads);
   complete();
+}
+
+void LcmRequestChannel::Inbox::receive_status(Bytes bytes) {
+  if (scene_warning || decode(bytes, status) || status.scene_fingerprint == scene_fingerprint) return;
+  scene_warning =
+      Warning{"the service (instance " + std::to_string(status.instance_id) + ")",
+              "another scene, from its file " + status.scene, "the scene of this program",
+              "another file, or a file or mesh that was changed since the service loaded it",
+              "Give both the same file, and reload the service with SIGHUP after a change"};
+}
+
+void LcmRequestChannel::Inbox::compare_with_latest() {
+  if (!contradiction.empty() || incoming.bodies.size() != latest.bodies.size()) return;
+  for (std::size_t i = 0; i < latest.bodies.size(); ++i) {
+    const BodyWrench &a = latest.bodies[i], &b = incoming.bodies[i];
+    const Vec3 force_a(a.force.data()), force_b(b.force.data());
+    constexpr double kRounding = 1e-9;
+    const double bound =
+        a.force_error_bound + b.force_error_bound + kRounding * (force_a.norm() + force_b.norm());
+    if (a.status == b.status && (force_a - force_b).norm() <= bound) continue;
+    contradiction = "two responses to request " + std::to_string(latest.id.seq) + ": body " +
+                    std::to_string(a.body_id) + " has " + to_string(a.status) + ", force " +
+                    format_vector(force_a, 6) + " N, and " + to_string(b.status) + ", force " +
+                    format_vector(force_b, 6) + " N";
+    return;
+  }
 }
 
 void LcmRequestChannel::Inbox::complete() {
@@ -79,6 +107,14 @@ Expected<LcmRequestChannel> LcmRequestChannel::open(const ChannelOptions& option
       options.wrenches_channel,
       [inbox = channel.inbox_.get()](Bytes bytes, std::string_view /*channel*/) { inbox->receive(bytes); });
   if (!subscribed) return make_error(subscribed.error());
+  if (options.scene_fingerprint) {
+    channel.inbox_->scene_fingerprint = *options.scene_fingerprint;
+    const Expected<void> with_status = channel.connection_.subscribe(
+        options.status_channel, [inbox = channel.inbox_.get()](Bytes bytes, std::string_view /*channel*/) {
+          inbox->receive_status(bytes);
+        });
+    if (!with_status) return make_error(with_status.error());
+  }
   if (!options.wait_for_loads) return channel;
   channel.inbox_->needs_loads = true;
   const Expected<void> with_loads = channel.connection_.subscribe(

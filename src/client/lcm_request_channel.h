@@ -3,7 +3,10 @@
 // A response belongs to the session if its session_id is the session's and its seq does not exceed that of
 // the last request; the one with the highest seq is kept. Other messages on the channel are ignored. Where
 // loads are waited for, the same holds for them, and a response counts as arrived once the loads with its seq
-// have arrived too: a lost loads message is then requested again like a lost response. Not thread-safe.
+// have arrived too: a lost loads message is then requested again like a lost response.
+//
+// Two responses to one request that differ by more than their error bounds come from two services with
+// different scenes, or from a program that changes them. Not thread-safe.
 #pragma once
 
 #include <atomic>
@@ -17,6 +20,7 @@
 #include <vector>
 
 #include "messages/condition_change.h"
+#include "messages/status.h"
 #include "messages/wire.h"
 #include "transport/lcm_connection.h"
 
@@ -35,6 +39,10 @@ struct ChannelOptions {
   std::string wrenches_channel{kWrenchesChannel};
   std::string loads_channel{kLoadsChannel};
   std::string condition_channel{kConditionChannel};  // for set_conditions()
+  std::string status_channel{kStatusChannel};        // for scene_fingerprint
+  // scene_fingerprint() of the caller's scene: compared with that of every service on the status channel, see
+  // scene_warning(). nullopt: not compared.
+  std::optional<std::int64_t> scene_fingerprint;
   // Receive the loads of every response as well, and wait for them. At least one body of each request must
   // have the output "loads" in the service's scene: else none are published, and no request succeeds.
   bool wait_for_loads = false;
@@ -81,6 +89,10 @@ class LcmRequestChannel {
   bool waits_for_loads() const { return options_.wait_for_loads; }
   // Messages that were ignored because they are not valid, see ClientStats::malformed.
   std::int64_t malformed() const { return inbox_->malformed; }
+  // The first service that has another scene; nullptr: none has been seen, or nothing is compared.
+  const Warning* scene_warning() const { return inbox_->scene_warning ? &*inbox_->scene_warning : nullptr; }
+  // What two responses to one request say, the first time that they differ; empty: they agree.
+  const std::string& contradiction() const { return inbox_->contradiction; }
   bool cancelled() const {
     return (cancelled_ != nullptr && cancelled_->load()) ||
            (options_.is_interrupted && options_.is_interrupted());
@@ -114,9 +126,15 @@ class LcmRequestChannel {
     BodiesLoads loads;
     std::vector<ResponseArrival> arrivals;
     std::int64_t malformed = 0;
+    std::int64_t scene_fingerprint = 0;
+    ServiceStatus status;  // reused
+    std::optional<Warning> scene_warning;
+    std::string contradiction;
 
     void receive(Bytes bytes);
     void receive_loads(Bytes bytes);
+    void receive_status(Bytes bytes);
+    void compare_with_latest();  // incoming, which has the same seq
     bool is_newer(const RequestId& id) const { return !has_response || id.seq > latest.id.seq; }
     void complete();
   };

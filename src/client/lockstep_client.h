@@ -28,6 +28,8 @@ class LockstepClient {
   Expected<const WrenchResponse*> request(const BorrowedRequest& request);
   // Of the response that was returned last, see ChannelOptions::wait_for_loads.
   const BodiesLoads& loads() const { return channel_.latest_loads(); }
+  // See LcmRequestChannel::scene_warning().
+  const Warning* scene_warning() const { return channel_.scene_warning(); }
   const ClientStats& statistics() const { return statistics_; }
 
  private:

@@ -55,6 +55,11 @@ Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
 Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel,
                                                const BorrowedRequest& request,
                                                const WrenchResponse& response) {
+  if (!channel.contradiction().empty()) {
+    return make_error({channel.describe_endpoint(), channel.contradiction(), "one response, or equal ones",
+                       "two services with different scenes respond on these channels",
+                       "Stop one of them, or give each its own channels"});
+  }
   const bool same_bodies = std::equal(
       request.bodies.begin(), request.bodies.end(), response.bodies.begin(), response.bodies.end(),
       [](const BodyState& state, const BodyWrench& wrench) { return state.body_id == wrench.body_id; });

@@ -17,6 +17,8 @@ bool same_bytes(Bytes a, Bytes b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
+constexpr std::size_t kMaxFindings = 16;
+
 // One entry per body, if any body has the hydrostatics output.
 std::size_t hydrostatics_cache_size(const Scene& scene) {
   return scene.bodies_with_hydrostatics() > 0 ? scene.bodies().size() : 0;
@@ -35,6 +37,7 @@ RequestHandler::RequestHandler(const Scene& scene, const RequestHandlerOptions& 
   assert(max_sessions_ >= 1);
   sessions_.reserve(max_sessions_);
   in_progress_.reserve(kMaxInProgress);
+  findings_.reserve(kMaxFindings);
 }
 
 void RequestHandler::set_scene(const Scene& scene) {
@@ -84,6 +87,7 @@ RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
   session.last_use = ++use_;
   const auto index = static_cast<std::size_t>(&session - sessions_.data());
   const bool has_reply = !session.last_request.empty();
+  check_motion(session, *request);
   return finish(index, [&] {
     bool has_room = begin_work(*request, bytes.size(), session);
     const bool complete =
@@ -221,6 +225,20 @@ std::optional<std::int64_t> RequestHandler::newest_seq(std::int64_t session_id) 
   return known->newest_seq;
 }
 
+void RequestHandler::check_motion(Session& session, const RequestView& request) {
+  const auto before = RequestView::of(session.last_request);
+  const auto finding = session.motion.check(before ? &*before : nullptr, request, *scene_);
+  if (!finding) return;
+  ++(finding->contradictions == 0 ? counters_.quaternions_xyzw : counters_.motions_contradicting);
+  if (findings_.size() < kMaxFindings) findings_.push_back(*finding);
+}
+
+std::vector<MotionFinding> RequestHandler::take_findings() {
+  std::vector<MotionFinding> findings = findings_;
+  findings_.clear();  // and keeps its memory
+  return findings;
+}
+
 void RequestHandler::count_decode_error(DecodeError error) {
   switch (error) {
     case DecodeError::kTruncated:
@@ -253,6 +271,7 @@ RequestHandler::Session* RequestHandler::start_session(const RequestId& first) {
   session->id = first.session_id;
   session->newest_seq = first.seq;
   session->pace = Pace::kUnknown;
+  session->motion = {};
   return session;
 }
 

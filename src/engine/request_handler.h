@@ -30,6 +30,7 @@
 
 #include "engine/body_evaluator.h"
 #include "engine/condition_timeline.h"
+#include "engine/motion_check.h"
 #include "engine/sea_timeline.h"
 #include "engine/water_at_time.h"
 #include "messages/status.h"
@@ -154,6 +155,10 @@ class RequestHandler {
   // The newest seq handled in the session; nullopt: unknown session.
   std::optional<std::int64_t> newest_seq(std::int64_t session_id) const;
 
+  // What the states of a session contradict, since the last call: see MotionCheck. All of
+  // them are counted; of many at once the first are kept.
+  std::vector<MotionFinding> take_findings();
+
   // Number of threads available for the bodies of one request.
   unsigned thread_count() const { return evaluator_.thread_count(); }
   const ServiceCounters& counters() const { return counters_; }
@@ -183,6 +188,7 @@ class RequestHandler {
     std::vector<std::uint8_t> last_loads;         // likewise
     Work work;
     Pace pace = Pace::kUnknown;
+    MotionCheck motion;
     std::size_t counted = 0;  // retained() when retained_ was updated last
 
     std::size_t retained() const {
@@ -192,6 +198,7 @@ class RequestHandler {
   };
 
   void count_decode_error(DecodeError error);
+  void check_motion(Session& session, const RequestView& request);
   // Evicts the least recently used session if necessary; nullptr: all have a request in progress.
   Session* start_session(const RequestId& first);
   // Begins a request, or begins it again. False: there is no room for what it will retain.
@@ -232,6 +239,7 @@ class RequestHandler {
     BodyHydrostatics hydrostatics;
   };
   std::vector<CachedHydrostatics> cached_hydrostatics_;  // by body; empty if no body has this output
+  std::vector<MotionFinding> findings_;
   std::optional<std::size_t>
       last_session_;                      // index into sessions_; nullopt: the last request was not answered
   std::vector<std::size_t> in_progress_;  // indices into sessions_, in the order of their turns

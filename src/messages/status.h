@@ -38,6 +38,8 @@ struct ServiceCounters {
   std::int64_t seas_rejected = 0;
   std::int64_t conditions_received = 0;
   std::int64_t conditions_rejected = 0;
+  std::int64_t motions_contradicting = 0;
+  std::int64_t quaternions_xyzw = 0;
   std::array<std::int64_t, kBodyStatusCount> bodies{};  // indexed by BodyStatus
   std::int64_t quaternions_normalised = 0;
   std::int64_t bodies_dry = 0;
@@ -103,6 +105,8 @@ struct ServiceStatus {
   SimdTarget simd_target = SimdTarget::kOther;
   std::int32_t threads = 1;
   std::int32_t scene_bodies = 0;
+  std::int64_t scene_fingerprint = 0;
+  std::int64_t other_services = 0;
   std::int64_t reloads = 0;
   std::int64_t reloads_failed = 0;
   std::int64_t send_failures = 0;

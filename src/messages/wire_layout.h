@@ -140,6 +140,8 @@ void visit_counters(Visitor&& visitor, C&... c) {
   visitor(c.seas_rejected...);
   visitor(c.conditions_received...);
   visitor(c.conditions_rejected...);
+  visitor(c.motions_contradicting...);
+  visitor(c.quaternions_xyzw...);
   visitor(c.bodies...);
   visitor(c.quaternions_normalised...);
   visitor(c.bodies_dry...);
@@ -158,6 +160,7 @@ void visit_counters(Visitor&& visitor, C&... c) {
 template <MaybeConst<ServiceStatus> Status, typename Visitor>
 void visit_trailer(Status& status, Visitor& visitor) {
   visitor(status.uptime, status.mode, status.simd_target, status.threads, status.scene_bodies);
+  visitor(status.scene_fingerprint, status.other_services);
   visitor(status.reloads, status.reloads_failed, status.send_failures);
   visitor(status.packets_dropped, status.fragments_dropped, status.partial_messages_evicted);
   visitor(status.faults.dropped, status.faults.delayed, status.faults.duplicated);

@@ -30,6 +30,24 @@ double plausible_scale(double density) {
   return of(best) >= kMinDensity && of(best) <= kMaxDensity ? best : 0.0;
 }
 
+void warn_of_size(const Body& body, BodyWarningList& list) {
+  constexpr double kLargest = 1000.0;  // [m]
+  const double size = body.prepared_mesh->mesh.diagonal;
+  if (size <= kLargest) return;
+  list.add(body, {"", "the diagonal of its bounding box is " + format_number(size, 4) + " m",
+                  "at most " + format_number(kLargest) + " m", "a mesh in another unit, such as millimetres",
+                  "Set scale = 0.001 for a mesh in millimetres"});
+}
+
+void warn_of_density(const Body& body, BodyWarningList& list) {
+  if (!body.dynamics.density) return;
+  const double density = *body.dynamics.density;
+  if (density >= kMinDensity && density <= kMaxDensity) return;
+  list.add(body, {"", "density = " + format_number(density, 4) + " kg/m^3",
+                  format_number(kMinDensity) + " to " + format_number(kMaxDensity) + " kg/m^3",
+                  "grams per cubic centimetre, or a mass", "Give kg/m^3, or the key mass (kg)"});
+}
+
 void warn_of_unit(const Body& body, BodyWarningList& list) {
   const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
   if (!body.dynamics.mass || mesh.is_open() || !(mesh.volume > 0.0)) return;
@@ -53,7 +71,11 @@ void warn_of_unit(const Body& body, BodyWarningList& list) {
 std::vector<Warning> mesh_warnings(const Scene& scene, const UpAxisCheck& up) {
   std::vector<Warning> warnings = up_axis_warnings(scene, up);
   BodyWarningList units;
-  for (const Body& body : scene.bodies()) warn_of_unit(body, units);
+  for (const Body& body : scene.bodies()) {
+    warn_of_size(body, units);
+    warn_of_density(body, units);
+    warn_of_unit(body, units);
+  }
   std::ranges::move(units.with_subjects(scene.name()), std::back_inserter(warnings));
   return warnings;
 }

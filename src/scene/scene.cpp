@@ -272,6 +272,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
   scene.name_ = description.name;
   scene.water_ = description.water;
   scene.receives_sea_ = description.waves_received;
+  scene.text_fingerprint_ = description.text_fingerprint;
   scene.current_W_ = description.sea.current_W;
   Expected<std::shared_ptr<const PreparedSea>> sea = make_sea(description);
   if (!sea) return make_error(std::move(sea.error()));

@@ -84,6 +84,7 @@ class Scene {
   std::optional<std::size_t> index_of(std::int32_t id, std::size_t likely = 0) const {
     return index_.find(id, likely);
   }
+  std::uint64_t text_fingerprint() const { return text_fingerprint_; }  // of its SceneDescription
   std::size_t bodies_with_hydrostatics() const { return bodies_with_hydrostatics_; }
   std::size_t bodies_with_loads() const { return bodies_with_loads_; }  // that request this output
   // With drag or added mass, whose wrenches depend on their velocities.
@@ -97,6 +98,7 @@ class Scene {
   bool receives_sea_ = false;
   std::vector<WaveSystemReport> wave_systems_;
   Vec3 current_W_ = Vec3::Zero();
+  std::uint64_t text_fingerprint_ = 0;
   std::vector<std::unique_ptr<PreparedMesh>> meshes_;
   std::vector<std::unique_ptr<HydrodynamicModel>> hydrodynamic_models_;
   std::vector<std::unique_ptr<std::vector<BodyPart>>> parts_;

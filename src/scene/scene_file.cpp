@@ -297,6 +297,7 @@ Expected<SceneDescription> parse(std::string_view text, const std::string& name,
   top.finish();
   if (has_bodies && scene.bodies.empty()) top.fail("no body", "at least one section [[body]]");
   if (context.error) return make_error(*std::move(context.error));
+  scene.text_fingerprint = fingerprint_of(*root);
   return scene;
 }
 

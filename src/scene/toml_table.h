@@ -24,6 +24,9 @@ namespace buoyancy {
 // Replaces every control character by '?', so that file contents are safe to print on one line.
 std::string printable(std::string text);
 
+// SceneDescription::text_fingerprint
+std::uint64_t fingerprint_of(const toml::table& scene_file);
+
 // The file being parsed and the first error in it.
 struct SceneParseContext {
   std::string file;

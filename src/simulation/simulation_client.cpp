@@ -33,6 +33,10 @@ Expected<const WrenchResponse*> request(SimulationClient& client, const WrenchRe
   return std::visit([&](auto& alternative) { return alternative.request(request); }, client);
 }
 
+const Warning* scene_warning(const SimulationClient& client) {
+  return std::visit([](const auto& alternative) { return alternative.scene_warning(); }, client);
+}
+
 ClientStats statistics(const SimulationClient& client) {
   return std::visit([](const auto& alternative) -> ClientStats { return alternative.statistics(); }, client);
 }

@@ -19,6 +19,7 @@ class InProcessClient {
 
   Expected<const WrenchResponse*> request(const WrenchRequest& request);
   const ClientStats& statistics() const { return statistics_; }
+  const Warning* scene_warning() const { return nullptr; }  // it has the scene
 
   // See RequestHandler::receive_condition(). Nothing is lost here: `repeated` plays no part.
   void set_conditions(std::span<const ConditionChange> announced, std::span<const ConditionChange> repeated);
@@ -39,5 +40,7 @@ Expected<const WrenchResponse*> request(SimulationClient& client, const WrenchRe
 void set_conditions(SimulationClient& client, std::span<const ConditionChange> announced,
                     std::span<const ConditionChange> repeated);
 ClientStats statistics(const SimulationClient& client);
+// See LcmRequestChannel::scene_warning().
+const Warning* scene_warning(const SimulationClient& client);
 
 }  // namespace buoyancy

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset [bytes] of the version's length
 constexpr std::size_t kEmptyString = 4 + 1;
-constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{6 + 6 + 24 + 11 + 1 + 9 + 2 + 4 + 1};
+constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{8 + 6 + 26 + 11 + 1 + 9 + 2 + 4 + 1};
 
 std::string random_text() {
   return *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
@@ -50,6 +50,8 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.simd_target = static_cast<std::int32_t>(status.simd_target);
   message.threads = status.threads;
   message.scene_bodies = status.scene_bodies;
+  message.scene_fingerprint = status.scene_fingerprint;
+  message.other_services = status.other_services;
   message.reloads = status.reloads;
   message.reloads_failed = status.reloads_failed;
   message.send_failures = status.send_failures;
@@ -86,6 +88,8 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.seas_rejected = c.seas_rejected;
   message.conditions_received = c.conditions_received;
   message.conditions_rejected = c.conditions_rejected;
+  message.motions_contradicting = c.motions_contradicting;
+  message.quaternions_xyzw = c.quaternions_xyzw;
   message.bodies_ok = count(status, BodyStatus::kOk);
   message.bodies_unknown = count(status, BodyStatus::kUnknownBody);
   message.bodies_non_finite_pose = count(status, BodyStatus::kNonFinitePose);

@@ -7,6 +7,7 @@ namespace {
 
 std::vector<std::uint8_t> status_of(std::int64_t instance_id) {
   ServiceStatus status;
+  status.scene_fingerprint = 100 + instance_id;
   status.instance_id = instance_id;
   status.version = "0.1.0";
   std::vector<std::uint8_t> bytes;
@@ -21,7 +22,13 @@ TEST(InstanceMonitor, ReportsEachOtherInstanceOnce) {
   monitor.observe(status_of(8));
   monitor.observe(status_of(9));
   monitor.observe(status_of(8));
-  EXPECT_EQ(monitor.take_new(), (std::vector<std::int64_t>{8, 9}));
+  const std::vector<InstanceMonitor::Instance> seen = monitor.take_new();
+  ASSERT_EQ(seen.size(), 2U);
+  for (std::int64_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(seen[i].id, 8 + i);
+    EXPECT_EQ(seen[i].scene_fingerprint, 108 + i);
+  }
+  EXPECT_EQ(monitor.count(), 2U);
   monitor.observe(status_of(9));
   EXPECT_TRUE(monitor.take_new().empty());
 }
