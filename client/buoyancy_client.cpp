@@ -116,18 +116,10 @@ Expected<void> check_arguments(const Arguments& arguments, double steps) {
     return make_error({"--duration and --step", std::to_string(steps) + " steps", "at most 1e15", "", ""});
   }
   const ChannelOptions& channel = arguments.channel;
-  for (const std::string& name :
-       {channel.states_channel, channel.wrenches_channel, channel.condition_channel}) {
-    if (Expected<void> checked = check_channel(name); !checked) return checked;
-  }
-  if (channel.states_channel == channel.wrenches_channel) {
-    return make_error({"channels", "both are " + channel.states_channel, "two different names",
-                       "requests would be taken for responses", ""});
-  }
-  if (channel.condition_channel == channel.states_channel ||
-      channel.condition_channel == channel.wrenches_channel) {
-    return make_error({"channels", "two are " + channel.condition_channel, "three different names",
-                       "messages of one type would be taken for another", ""});
+  if (Expected<void> checked = check_channels_distinct({channel.states_channel, channel.wrenches_channel,
+                                                        channel.condition_channel, channel.status_channel});
+      !checked) {
+    return checked;
   }
   return check_lcm_url(channel.lcm_url);
 }

@@ -31,6 +31,7 @@ struct Arguments {
   int port = 8667;
   std::string three = kThreeJs;
   std::string scheduling = "idle";
+  bool metrics = false;
   ObservedChannels channels;
   PoseOptions poses;
 };
@@ -58,6 +59,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "like other programs, for a machine that is never idle")
       ->check(CLI::IsMember({"idle", "normal"}))
       ->capture_default_str();
+  app.add_flag("--metrics", arguments.metrics,
+               "Serve the fields of the service's status at /metrics, in the text format of Prometheus");
   add_states_channel_option(app, arguments.channels.states);
   add_wrenches_channel_option(app, arguments.channels.wrenches);
   add_hydrostatics_channel_option(app, arguments.channels.hydrostatics);
@@ -108,8 +111,10 @@ int show(const CLI::App& app, const Arguments& arguments) {
   Expected<LiveView> view = LiveView::open(*scene, arguments.lcm_url, channels, broadcaster);
   if (!view) return report(app, view.error(), kFailure);
   if (view->buffer_warning()) print_warning(app, *view->buffer_warning());
+  Metrics metrics;
+  if (arguments.metrics) view->keep_metrics(metrics);
   const auto server = PageServer::start(arguments.address, arguments.port, std::move(*page), broadcaster, {},
-                                        arguments.host_names);
+                                        arguments.host_names, arguments.metrics ? &metrics : nullptr);
   if (!server) return report(app, server.error(), kFailure);
 
   if (!print_output(app, "ready: " + (*server)->url() + "\n")) return kFailure;

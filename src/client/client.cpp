@@ -4,6 +4,9 @@
 #include <random>
 #include <utility>
 
+#include "base/format.h"
+#include "client/request_with_retries.h"
+
 namespace buoyancy {
 
 Expected<Client> Client::open(const ClientOptions& options) {
@@ -11,13 +14,15 @@ Expected<Client> Client::open(const ClientOptions& options) {
   if (!channel) return make_error(channel.error());
   const std::int64_t session_id = options.session_id ? *options.session_id : make_session_id();
   if (options.interval) {
-    return Client(FreeRunningClient(std::move(*channel), options.retry_policy, *options.interval),
-                  session_id);
+    return Client(FreeRunningClient(std::move(*channel), options.retry_policy, *options.interval), session_id,
+                  options.channel.status_channel);
   }
-  return Client(LockstepClient(std::move(*channel), options.retry_policy), session_id);
+  return Client(LockstepClient(std::move(*channel), options.retry_policy), session_id,
+                options.channel.status_channel);
 }
 
-Client::Client(ClientVariant client, std::int64_t session_id) : client_(std::move(client)) {
+Client::Client(ClientVariant client, std::int64_t session_id, std::string status_channel)
+    : client_(std::move(client)), status_channel_(std::move(status_channel)) {
   next_.session_id = session_id;
 }
 
@@ -41,6 +46,17 @@ const BodiesLoads& Client::loads() const {
 
 const Warning* Client::scene_warning() const {
   return std::visit([](const auto& client) { return client.scene_warning(); }, client_);
+}
+
+Expected<const ServiceStatus*> Client::status(double timeout) {
+  const Clock::time_point deadline = Clock::now() + to_duration(timeout);
+  const ServiceStatus* const status =
+      std::visit([deadline](auto& client) { return client.wait_for_status(deadline); }, client_);
+  if (status != nullptr) return status;
+  return make_error({"channel " + status_channel_, "no status for " + format_number(timeout, 3) + " s",
+                     "the status of buoyancyd, once a second",
+                     "no buoyancyd is running on this LCM URL, or its status has another channel",
+                     "Start buoyancyd with the same URL and channels"});
 }
 
 ClientStats Client::statistics() const {

@@ -53,13 +53,18 @@ class Client {
   // has been seen. The service states its scene when a session begins, and once a second.
   const Warning* scene_warning() const;
 
+  // The next status that a service publishes, which is due once a second, within this time [s]; valid until the next
+  // call. Errors: none arrives.
+  Expected<const ServiceStatus*> status(double timeout = 2.0);
+
   ClientStats statistics() const;
 
  private:
   using ClientVariant = std::variant<LockstepClient, FreeRunningClient>;
-  Client(ClientVariant client, std::int64_t session_id);
+  Client(ClientVariant client, std::int64_t session_id, std::string status_channel);
 
   ClientVariant client_;
+  std::string status_channel_;
   RequestId next_;  // of the next request
 };
 

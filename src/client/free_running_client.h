@@ -35,7 +35,8 @@ class FreeRunningClient {
   Expected<const WrenchResponse*> request(const BorrowedRequest& request);
   // Of the response that was returned last, see ChannelOptions::wait_for_loads.
   const BodiesLoads& loads() const { return channel_.latest_loads(); }
-  // See LcmRequestChannel::scene_warning().
+  // See LcmRequestChannel.
+  const ServiceStatus* wait_for_status(Clock::time_point deadline) { return channel_.wait_for_status(deadline); }
   const Warning* scene_warning() const { return channel_.scene_warning(); }
   ClientStats statistics() const;
 

@@ -57,7 +57,9 @@ void LcmRequestChannel::Inbox::receive_loads(Bytes bytes) {
 }
 
 void LcmRequestChannel::Inbox::receive_status(Bytes bytes) {
-  if (scene_warning || decode(bytes, status) || status.scene_fingerprint == scene_fingerprint) return;
+  if (decode(bytes, status)) return;
+  ++statuses;
+  if (scene_warning || status.scene_fingerprint == scene_fingerprint.value_or(status.scene_fingerprint)) return;
   scene_warning =
       Warning{"the service (instance " + std::to_string(status.instance_id) + ")",
               "another scene, from its file " + status.scene, "the scene of this program",
@@ -107,14 +109,12 @@ Expected<LcmRequestChannel> LcmRequestChannel::open(const ChannelOptions& option
       options.wrenches_channel,
       [inbox = channel.inbox_.get()](Bytes bytes, std::string_view /*channel*/) { inbox->receive(bytes); });
   if (!subscribed) return make_error(subscribed.error());
-  if (options.scene_fingerprint) {
-    channel.inbox_->scene_fingerprint = *options.scene_fingerprint;
-    const Expected<void> with_status = channel.connection_.subscribe(
-        options.status_channel, [inbox = channel.inbox_.get()](Bytes bytes, std::string_view /*channel*/) {
-          inbox->receive_status(bytes);
-        });
-    if (!with_status) return make_error(with_status.error());
-  }
+  channel.inbox_->scene_fingerprint = options.scene_fingerprint;
+  const Expected<void> with_status = channel.connection_.subscribe(
+      options.status_channel, [inbox = channel.inbox_.get()](Bytes bytes, std::string_view /*channel*/) {
+        inbox->receive_status(bytes);
+      });
+  if (!with_status) return make_error(with_status.error());
   if (!options.wait_for_loads) return channel;
   channel.inbox_->needs_loads = true;
   const Expected<void> with_loads = channel.connection_.subscribe(
@@ -207,9 +207,8 @@ void LcmRequestChannel::set_conditions(std::span<const ConditionChange> announce
   encode_all(repeated, repeated_);
 }
 
-bool LcmRequestChannel::wait_for(std::int64_t seq, Clock::time_point deadline) {
-  const auto arrived = [&] { return inbox_->has_response && inbox_->latest.id.seq >= seq; };
-  inbox_->arrivals.clear();
+template <typename Arrived>
+bool LcmRequestChannel::wait_until(const Arrived& arrived, Clock::time_point deadline) {
   int after_deadline = 0;
   while (!arrived()) {
     const Clock::duration remaining = std::max(deadline - Clock::now(), Clock::duration::zero());
@@ -222,6 +221,16 @@ bool LcmRequestChannel::wait_for(std::int64_t seq, Clock::time_point deadline) {
     ppoll(&readable, 1, &sleep, nullptr);
   }
   return true;
+}
+
+bool LcmRequestChannel::wait_for(std::int64_t seq, Clock::time_point deadline) {
+  inbox_->arrivals.clear();
+  return wait_until([&] { return inbox_->has_response && inbox_->latest.id.seq >= seq; }, deadline);
+}
+
+const ServiceStatus* LcmRequestChannel::wait_for_status(Clock::time_point deadline) {
+  const std::int64_t before = inbox_->statuses;
+  return wait_until([&] { return inbox_->statuses > before; }, deadline) ? &inbox_->status : nullptr;
 }
 
 std::string LcmRequestChannel::describe_endpoint() const {

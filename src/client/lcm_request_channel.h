@@ -39,7 +39,7 @@ struct ChannelOptions {
   std::string wrenches_channel{kWrenchesChannel};
   std::string loads_channel{kLoadsChannel};
   std::string condition_channel{kConditionChannel};  // for set_conditions()
-  std::string status_channel{kStatusChannel};        // for scene_fingerprint
+  std::string status_channel{kStatusChannel};
   // scene_fingerprint() of the caller's scene: compared with that of every service on the status channel, see
   // scene_warning(). nullopt: not compared.
   std::optional<std::int64_t> scene_fingerprint;
@@ -79,6 +79,8 @@ class LcmRequestChannel {
   // Waits until a response with at least this seq has arrived, at most until the deadline. Processes messages
   // that have already arrived even if the deadline has passed. Returns false if there is no such response.
   bool wait_for(std::int64_t seq, Clock::time_point deadline);
+  // Waits for the next status of a service. nullptr: none has arrived until the deadline.
+  const ServiceStatus* wait_for_status(Clock::time_point deadline);
   // The session's responses that arrived during the last wait_for(), including duplicates and old ones.
   const std::vector<ResponseArrival>& arrivals() const { return inbox_->arrivals; }
 
@@ -126,8 +128,9 @@ class LcmRequestChannel {
     BodiesLoads loads;
     std::vector<ResponseArrival> arrivals;
     std::int64_t malformed = 0;
-    std::int64_t scene_fingerprint = 0;
-    ServiceStatus status;  // reused
+    std::optional<std::int64_t> scene_fingerprint;
+    ServiceStatus status;  // the newest
+    std::int64_t statuses = 0;
     std::optional<Warning> scene_warning;
     std::string contradiction;
 
@@ -140,6 +143,9 @@ class LcmRequestChannel {
   };
 
   LcmRequestChannel(ChannelOptions options, LcmConnection connection);
+  // Processes messages until arrived() holds. Returns whether it does.
+  template <typename Arrived>
+  bool wait_until(const Arrived& arrived, Clock::time_point deadline);
   Expected<void> publish(const std::vector<std::vector<std::uint8_t>>& conditions);  // and the last request
 
   ChannelOptions options_;

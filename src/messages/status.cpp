@@ -44,12 +44,9 @@ tl::expected<std::string_view, DecodeError> consume_string(Bytes& bytes) {
 }
 
 struct AddCounter {
-  void operator()(std::int64_t& total, std::int64_t value) const { total += value; }
-  void operator()(double& largest, double value) const { largest = std::max(largest, value); }
-  template <std::size_t kSize>
-  void operator()(std::array<std::int64_t, kSize>& totals,
-                  const std::array<std::int64_t, kSize>& values) const {
-    for (std::size_t i = 0; i < kSize; ++i) totals[i] += values[i];
+  void operator()(const char* /*name*/, std::int64_t& total, std::int64_t value) const { total += value; }
+  void operator()(const char* /*name*/, double& largest, double value) const {
+    largest = std::max(largest, value);
   }
 };
 

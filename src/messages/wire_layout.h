@@ -113,61 +113,101 @@ void visit_strings(Status& status, Visitor&& visitor) {
   visitor(status.injected_faults);
 }
 
-// Visits each counter; with several ServiceCounters, the same counter of all of them in one call.
+// The names of ServiceCounters::bodies in service_status_t, by BodyStatus.
+inline constexpr std::array<const char*, kBodyStatusCount> kBodyCounterNames{
+    "bodies_ok",           "bodies_unknown",       "bodies_non_finite_pose", "bodies_bad_quaternion",
+    "bodies_non_finite_twist", "bodies_bad_lead_time", "bodies_open_edge_wet",   "bodies_out_of_range",
+    "bodies_no_sea",       "bodies_bad_condition", "bodies_not_certified"};
+
+// Visits each counter with its name in service_status_t; with several ServiceCounters, the same counter of all of
+// them in one call.
 template <typename Visitor, MaybeConst<ServiceCounters>... C>
 void visit_counters(Visitor&& visitor, C&... c) {
-  visitor(c.requests...);
-  visitor(c.computed...);
-  visitor(c.retries...);
-  visitor(c.conflicting_retries...);
-  visitor(c.stale...);
-  visitor(c.superseded...);
-  visitor(c.sessions...);
-  visitor(c.sessions_evicted...);
-  visitor(c.rejected_truncated...);
-  visitor(c.rejected_fingerprint...);
-  visitor(c.rejected_count...);
-  visitor(c.rejected_length...);
-  visitor(c.rejected_bodies...);
-  visitor(c.rejected_work...);
-  visitor(c.rejected_busy...);
-  visitor(c.rejected_memory...);
-  visitor(c.outputs_too_large...);
-  visitor(c.requests_sliced...);
-  visitor(c.retained_bytes...);
-  visitor(c.replies_evicted...);
-  visitor(c.seas_received...);
-  visitor(c.seas_rejected...);
-  visitor(c.conditions_received...);
-  visitor(c.conditions_rejected...);
-  visitor(c.motions_contradicting...);
-  visitor(c.quaternions_xyzw...);
-  visitor(c.bodies...);
-  visitor(c.quaternions_normalised...);
-  visitor(c.bodies_dry...);
-  visitor(c.bodies_wet...);
-  visitor(c.bodies_crossing...);
-  visitor(c.bodies_unchanged...);
-  visitor(c.bodies_work_capped...);
-  visitor(c.bodies_sea_too_steep...);
-  visitor(c.bodies_below_bed...);
-  visitor(c.wave_patches...);
-  visitor(c.hydrostatics...);
-  visitor(c.largest_dropped_force...);
-  visitor(c.largest_dropped_torque...);
+  visitor("requests", c.requests...);
+  visitor("computed", c.computed...);
+  visitor("retries", c.retries...);
+  visitor("conflicting_retries", c.conflicting_retries...);
+  visitor("stale", c.stale...);
+  visitor("superseded", c.superseded...);
+  visitor("sessions", c.sessions...);
+  visitor("sessions_evicted", c.sessions_evicted...);
+  visitor("rejected_truncated", c.rejected_truncated...);
+  visitor("rejected_fingerprint", c.rejected_fingerprint...);
+  visitor("rejected_count", c.rejected_count...);
+  visitor("rejected_length", c.rejected_length...);
+  visitor("rejected_bodies", c.rejected_bodies...);
+  visitor("rejected_work", c.rejected_work...);
+  visitor("rejected_busy", c.rejected_busy...);
+  visitor("rejected_memory", c.rejected_memory...);
+  visitor("outputs_too_large", c.outputs_too_large...);
+  visitor("requests_sliced", c.requests_sliced...);
+  visitor("retained_bytes", c.retained_bytes...);
+  visitor("replies_evicted", c.replies_evicted...);
+  visitor("seas_received", c.seas_received...);
+  visitor("seas_rejected", c.seas_rejected...);
+  visitor("conditions_received", c.conditions_received...);
+  visitor("conditions_rejected", c.conditions_rejected...);
+  visitor("motions_contradicting", c.motions_contradicting...);
+  visitor("quaternions_xyzw", c.quaternions_xyzw...);
+  for (std::size_t i = 0; i < kBodyCounterNames.size(); ++i) visitor(kBodyCounterNames[i], c.bodies[i]...);
+  visitor("quaternions_normalised", c.quaternions_normalised...);
+  visitor("bodies_dry", c.bodies_dry...);
+  visitor("bodies_wet", c.bodies_wet...);
+  visitor("bodies_crossing", c.bodies_crossing...);
+  visitor("bodies_unchanged", c.bodies_unchanged...);
+  visitor("bodies_work_capped", c.bodies_work_capped...);
+  visitor("bodies_sea_too_steep", c.bodies_sea_too_steep...);
+  visitor("bodies_below_bed", c.bodies_below_bed...);
+  visitor("wave_patches", c.wave_patches...);
+  visitor("hydrostatics", c.hydrostatics...);
+  visitor("largest_dropped_force", c.largest_dropped_force...);
+  visitor("largest_dropped_torque", c.largest_dropped_torque...);
+}
+
+// Visits each field after the strings with its name in service_status_t.
+template <MaybeConst<ServiceStatus> Status, typename Visitor>
+void visit_named_trailer(Status& status, Visitor&& visitor) {
+  visitor("uptime", status.uptime);
+  visitor("mode", status.mode);
+  visitor("simd_target", status.simd_target);
+  visitor("threads", status.threads);
+  visitor("scene_bodies", status.scene_bodies);
+  visitor("scene_fingerprint", status.scene_fingerprint);
+  visitor("other_services", status.other_services);
+  visitor("reloads", status.reloads);
+  visitor("reloads_failed", status.reloads_failed);
+  visitor("send_failures", status.send_failures);
+  visitor("packets_dropped", status.packets_dropped);
+  visitor("fragments_dropped", status.fragments_dropped);
+  visitor("partial_messages_evicted", status.partial_messages_evicted);
+  visitor("faults_dropped", status.faults.dropped);
+  visitor("faults_delayed", status.faults.delayed);
+  visitor("faults_duplicated", status.faults.duplicated);
+  visitor("faults_reordered", status.faults.reordered);
+  visitor("faults_corrupted", status.faults.corrupted);
+  visitor("faults_stalls", status.faults.stalls);
+  visit_counters(visitor, status.counters);
+  visitor("latency_p50", status.latency.p50);
+  visitor("latency_p99", status.latency.p99);
+  visitor("latency_p999", status.latency.p999);
+  visitor("latency_max", status.latency.max);
+  visitor("queue_wait", status.queue_wait);
 }
 
 template <MaybeConst<ServiceStatus> Status, typename Visitor>
 void visit_trailer(Status& status, Visitor& visitor) {
-  visitor(status.uptime, status.mode, status.simd_target, status.threads, status.scene_bodies);
-  visitor(status.scene_fingerprint, status.other_services);
-  visitor(status.reloads, status.reloads_failed, status.send_failures);
-  visitor(status.packets_dropped, status.fragments_dropped, status.partial_messages_evicted);
-  visitor(status.faults.dropped, status.faults.delayed, status.faults.duplicated);
-  visitor(status.faults.reordered, status.faults.corrupted, status.faults.stalls);
-  visit_counters(visitor, status.counters);
-  visitor(status.latency.p50, status.latency.p99, status.latency.p999, status.latency.max);
-  visitor(status.queue_wait);
+  visit_named_trailer(status, [&visitor](const char* /*name*/, auto& field) { visitor(field); });
+}
+
+// Visits each field of a status with its name in service_status_t.
+template <MaybeConst<ServiceStatus> Status, typename Visitor>
+void visit_named_fields(Status& status, Visitor&& visitor) {
+  visitor("utime", status.utime);
+  visitor("instance_id", status.instance_id);
+  visitor("version", status.version);
+  visitor("scene", status.scene);
+  visitor("injected_faults", status.injected_faults);
+  visit_named_trailer(status, visitor);
 }
 
 // Adds up the sizes [bytes] of the visited fields.

@@ -8,12 +8,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <pybind11/stl.h>
 
 #include "base/format.h"
+#include "messages/wire_layout.h"
 #include "python/call_arguments.h"
 #include "python/module.h"
 #include "python/number_array.h"
@@ -22,6 +24,7 @@
 #include "python/scene_object.h"
 #include "python/wrenches.h"
 #include "scene/mesh_warnings.h"
+#include "scene/scene_fingerprint.h"
 
 namespace buoyancy::python {
 namespace {
@@ -59,6 +62,7 @@ struct ClientObject {
   SignalCheck signals;
   bool has_loads = false;
   bool is_busy = false;
+  bool has_warned = false;  // of another scene
   std::vector<BodyState> states;  // reused
 };
 
@@ -102,7 +106,8 @@ std::shared_ptr<const Scene> to_scene(const py::object& scene) {
 std::unique_ptr<ClientObject> open(const std::optional<std::string>& lcm_url, const py::object& scene,
                                    double timeout, std::int64_t max_retries, std::optional<double> interval,
                                    bool loads, const std::string& states_channel,
-                                   const std::string& wrenches_channel, const std::string& loads_channel) {
+                                   const std::string& wrenches_channel, const std::string& loads_channel,
+                                   const std::string& status_channel) {
   if (!(std::isfinite(timeout) && timeout > 0.0))
     throw py::value_error("timeout = " + format_shortest(timeout) + "; expected seconds above 0");
   if (max_retries < 0)
@@ -118,6 +123,8 @@ std::unique_ptr<ClientObject> open(const std::optional<std::string>& lcm_url, co
   options.channel.states_channel = states_channel;
   options.channel.wrenches_channel = wrenches_channel;
   options.channel.loads_channel = loads_channel;
+  options.channel.status_channel = status_channel;
+  if (object->scene != nullptr) options.channel.scene_fingerprint = scene_fingerprint(*object->scene);
   options.channel.wait_for_loads = loads;
   options.channel.cancelled = &object->closing;
   options.channel.is_interrupted = [signals = &object->signals] { return (*signals)(); };
@@ -249,6 +256,10 @@ PyObject* request(PyObject* self, PyObject* const* arguments, Py_ssize_t count, 
       if (object.closing) fail("was closed while it waited", "an open client", "");
       throw ServiceException(response.error());
     }
+    if (const Warning* const other = object.client->scene_warning(); other != nullptr && !object.has_warned) {
+      object.has_warned = true;
+      warn(*other);
+    }
     static const BodiesLoads no_loads;
     store(**response, object.has_loads ? object.client->loads() : no_loads, object.has_loads,
           instance_of<Wrenches>(result));
@@ -288,14 +299,40 @@ py::dict statistics(py::handle self) {
   return values;
 }
 
+py::dict status(py::handle self, double timeout) {
+  if (!(std::isfinite(timeout) && timeout > 0.0))
+    throw py::value_error("timeout = " + format_shortest(timeout) + "; expected seconds above 0");
+  auto& object = instance_of<ClientObject>(self);
+  const BusyClient busy(object);
+  object.signals.start();
+  const Expected<const ServiceStatus*> newest = [&] {
+    const WithoutGil released;
+    return object.client->status(timeout);
+  }();
+  if (PyErr_Occurred() != nullptr) throw py::error_already_set();  // of a signal
+  if (!newest) throw ServiceException(newest.error());
+  py::dict values;
+  visit_named_fields(**newest, [&values](const char* name, const auto& field) {
+    if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(field)>>) {
+      values[name] = static_cast<std::int32_t>(field);
+    } else {
+      values[name] = field;
+    }
+  });
+  return values;
+}
+
 constexpr const char* kClientDoc =
     "Sends poses to buoyancyd over LCM and receives the wrenches.\n\n"
     "Client(lcm_url=None, scene=None, *, timeout=0.1, max_retries=50, interval=None, loads=False,\n"
     "       states_channel='BUOYANCY_STATES', wrenches_channel='BUOYANCY_WRENCHES', "
-    "loads_channel='BUOYANCY_LOADS')\n\n"
+    "loads_channel='BUOYANCY_LOADS',\n"
+    "       status_channel='BUOYANCY_STATUS')\n\n"
     "lcm_url: None for LCM_DEFAULT_URL or LCM's default. scene: a Scene or the path of the service's scene "
     "file; bodies\n"
-    "can then be named, and unknown ones are refused before they are sent. timeout, max_retries: a request "
+    "can then be named, unknown ones are refused before they are sent, and a service with another scene "
+    "gets a\n"
+    "UserWarning. timeout, max_retries: a request "
     "is sent\n"
     "again after each timeout (s), at most max_retries times. interval: None to wait for the response to "
     "each\n"
@@ -330,7 +367,8 @@ void define_client(py::module_& module) {
            py::arg("interval") = py::none(), py::arg("loads") = false,
            py::arg("states_channel") = std::string(kStatesChannel),
            py::arg("wrenches_channel") = std::string(kWrenchesChannel),
-           py::arg("loads_channel") = std::string(kLoadsChannel));
+           py::arg("loads_channel") = std::string(kLoadsChannel),
+           py::arg("status_channel") = std::string(kStatusChannel));
   add_method(type, request_method);
   type.def(
       "close", &close,
@@ -342,6 +380,10 @@ void define_client(py::module_& module) {
       "reserve", &reserve, py::arg("bodies"),
       "reserve($self, bodies)\n--\n\nPrepare for requests about this many bodies. Returns a warning if the "
       "kernel's buffer is too small for\ntheir responses, else None.");
+  type.def("status", &status, py::arg("timeout") = 2.0,
+           "status($self, timeout=2.0)\n--\n\nThe next status of the service, which comes once a second: a dict "
+           "with the fields of service_status_t.\nWaits without the interpreter's lock. Raises ServiceError if none "
+           "arrives within timeout (s).");
   type.def_property_readonly(
       "statistics", &statistics,
       "dict: requests, retries, unanswered, late, max_lag, malformed, and round_trip_p50, _p99, _max in s.");

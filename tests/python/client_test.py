@@ -1,5 +1,6 @@
 """Client against the real buoyancyd over UDP, in a network namespace."""
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -11,7 +12,7 @@ import unittest
 import numpy as np
 
 import buoyancy
-from support import BIN, TestCase, rows_of, without_preload
+from support import BIN, SOURCE, TestCase, rows_of, without_preload
 
 TIMEOUT = 60.0 * float(os.environ.get("BUOYANCY_TEST_TIMEOUT_FACTOR", "1"))
 LONG_WAIT = dict(max_retries=100_000)  # CTest ends the test before
@@ -105,6 +106,29 @@ class ExchangesMessagesWithTheService(TestCase):
             self.assertEqual((client.statistics["requests"], client.statistics["malformed"]), (7, 0))
             self.assertGreater(client.statistics["round_trip_p50"], 0)
             self.assertIsNone(client.reserve(2))
+
+    def test_status_has_the_fields_of_the_message(self):
+        message = (SOURCE / "lcmtypes" / "service_status_t.lcm").read_text(encoding="utf-8")
+        with Service(self.path), buoyancy.Client(scene=self.scene, **LONG_WAIT) as client:
+            client.request(8, (0, 0, 0), (1, 0, 0, 0))
+            status = client.status(timeout=TIMEOUT)
+            self.assertEqual(list(status), re.findall(r"^  (?:int32_t|int64_t|double|string) (\w+);", message, re.M))
+            self.assertEqual((status["scene_bodies"], status["scene"], status["requests"], status["bodies_ok"]),
+                             (2, self.path, 1, 1))
+            self.assertEqual(status["version"], buoyancy.__version__)
+            self.assertGreater(client.status(timeout=TIMEOUT)["uptime"], status["uptime"])
+            with self.assertRaisesRegex(ValueError, "timeout = 0; expected seconds above 0"):
+                client.status(timeout=0)
+        with buoyancy.Client() as client:
+            with self.assertRaisesRegex(buoyancy.ServiceError, "no status for 0.01 s"):
+                client.status(timeout=0.01)
+
+    def test_another_scene_gets_a_warning(self):
+        other = buoyancy.Scene.from_text(SCENE.replace("10, 10, 10", "10, 10, 11"))
+        with Service(self.path), buoyancy.Client(scene=other, **LONG_WAIT) as client:
+            with self.assertWarnsRegex(UserWarning, "another scene, from its file"):
+                for _ in range(1000):
+                    client.request(8, (0, 0, 0), (1, 0, 0, 0))
 
     def test_loads_and_unknown_bodies(self):
         with Service(self.path), buoyancy.Client(loads=True, **LONG_WAIT) as client:

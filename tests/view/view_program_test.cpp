@@ -78,6 +78,35 @@ TEST(ViewProgram, ShowsRunOfRealPrograms) {
   EXPECT_TRUE(floating["m"].is_array()) << floating;
 }
 
+TEST(ViewProgram, ServesMetricsOnlyIfAsked) {
+  RunningView view(kScene, {"--metrics"});
+  const auto metrics = [&view] {
+    HttpPeer peer(view.port());
+    peer.send(get_request("/metrics"));
+    return peer.receive_all(kWaitTimeout);
+  };
+  EXPECT_TRUE(contains(metrics(), "\nbuoyancy_up 0\n"));
+  RunningService service({}, kScene);
+  RawLcmSocket socket;
+  send_request(socket, one_body(7, 1, 0.0));
+  receive(socket);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(kWaitTimeout);
+  std::string text;
+  while (!contains(text, "\nbuoyancy_requests_total 1\n") && std::chrono::steady_clock::now() < deadline) {
+    text = metrics();
+  }
+  for (const char* line :
+       {"Content-Type: text/plain; version=0.0.4; charset=utf-8", "# TYPE buoyancy_requests_total counter",
+        "buoyancy_up 1", "buoyancy_scene_bodies 2", "buoyancy_bodies_ok_total 1", "buoyancy_sessions 1",
+        "# TYPE buoyancy_latency_p99_seconds gauge", "\nbuoyancy_info{version=\""}) {
+    EXPECT_TRUE(contains(text, line)) << text;
+  }
+  RunningView other(kScene);
+  HttpPeer peer(other.port());
+  peer.send(get_request("/metrics"));
+  EXPECT_TRUE(contains(peer.receive_all(kWaitTimeout), "404 Not Found"));
+}
+
 TEST(ViewProgram, ShowsLoadsOfRealPrograms) {
   RunningView view(moving_bodies());
   EventReader events(view.port());

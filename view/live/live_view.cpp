@@ -123,12 +123,22 @@ void LiveView::run(const TerminationSignals& termination, const std::function<bo
     if (now_ >= next) {
       monitor_.tick(now_);
       if (broadcaster_->listeners() > 0) publish();
+      if (metrics_ != nullptr) update_metrics();
       // After a delay, missed snapshots are not made up for.
       next = std::max(next + kPeriod, now_);
     }
     pollfd terminated{termination.fileno(), POLLIN, 0};
     if (::ppoll(&terminated, 1, &sleep, nullptr) > 0) break;
   }
+}
+
+void LiveView::update_metrics() {
+  constexpr double kInterval = 0.5;  // [s], half of that of the status
+  if (now_ < next_metrics_) return;
+  next_metrics_ = now_ + kInterval;
+  const std::optional<double> received = monitor_.status_received();
+  const bool is_current = received && now_ - *received <= BusMonitor::kStatusTimeout;
+  metrics_->set(metrics_text(is_current ? &*monitor_.status() : nullptr));
 }
 
 void LiveView::drain() {

@@ -18,6 +18,7 @@
 #include "scene/scene.h"
 #include "transport/udpm_receiver.h"
 #include "view/live/bus_monitor.h"
+#include "view/live/metrics.h"
 #include "view/live/snapshot_broadcaster.h"
 
 namespace buoyancy::view {
@@ -49,6 +50,9 @@ class LiveView {
   // small a receive buffer; nullopt: they fit.
   const std::optional<Warning>& buffer_warning() const { return buffer_warning_; }
 
+  // Sets this text with every status, and when none arrives any more; before run(). It must outlive the view.
+  void keep_metrics(Metrics& metrics) { metrics_ = &metrics; }
+
   // Runs until a termination signal arrives or keep_running returns false; to be called once.
   void run(const TerminationSignals& termination, const std::function<bool()>& keep_running);
 
@@ -74,6 +78,7 @@ class LiveView {
   void drain();
   void dispatch(const Route& route, Bytes bytes, ArrivalTime arrival);
   void publish();
+  void update_metrics();
 
   UdpmReceiver receiver_;
   std::vector<Route> routes_;  // by the receiver's channel number
@@ -82,6 +87,8 @@ class LiveView {
   double start_;  // [s], steady clock
   double now_;
   BusMonitor monitor_;
+  Metrics* metrics_ = nullptr;
+  double next_metrics_ = 0.0;  // [s]
   std::int64_t snapshots_ = 0;
   bool receives_sea_;
   std::shared_ptr<const SeaPeriod> sea_;  // the received one that sea_text_ describes

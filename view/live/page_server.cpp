@@ -234,11 +234,13 @@ class PageServer::Http {
  public:
   // Serves from now on.
   Http(UniqueFd listening, const std::string& address, std::vector<StaticResource> resources,
-       SnapshotBroadcaster& broadcaster, const PageLimits& limits, std::vector<std::string> host_names)
+       SnapshotBroadcaster& broadcaster, const PageLimits& limits, std::vector<std::string> host_names,
+       const Metrics* metrics)
       : listening_(std::move(listening)),
         address_(address),
         host_names_(std::move(host_names)),
         broadcaster_(broadcaster),
+        metrics_(metrics),
         limits_(limits),
         connections_(limits.connections, [this](Connections::Connection& client) { serve(client); }) {
     host_names_.emplace_back("localhost");
@@ -345,14 +347,18 @@ class PageServer::Http {
     const std::string target(request.target());
     const std::string path = target.substr(0, target.find('?'));
     if (path == "/events") return stream_events(client, stream, request);
+    if (path == "/metrics" && metrics_ != nullptr) {
+      return send(stream, "text/plain; version=0.0.4; charset=utf-8", metrics_->text());
+    }
     const auto found = resources_.find(path);
     if (found == resources_.end())
       return refuse(stream, request, "404 Not Found", "Not found; the page is at /.");
-    const StaticResource& resource = found->second;
-    const std::string_view body = resource.body;
-    bool reads =
-        stream.write(head("200 OK", "Content-Type: " + resource.content_type +
-                                        "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n"));
+    send(stream, found->second.content_type, found->second.body);
+  }
+
+  static void send(RequestStream& stream, const std::string& content_type, std::string_view body) {
+    bool reads = stream.write(head("200 OK", "Content-Type: " + content_type + "\r\nContent-Length: " +
+                                                 std::to_string(body.size()) + "\r\n"));
     for (std::size_t sent = 0; reads && sent < body.size(); sent += kMaxChunkBytes)
       reads = stream.write(body.substr(sent, kMaxChunkBytes));
   }
@@ -404,6 +410,7 @@ class PageServer::Http {
   const std::string address_;
   std::vector<std::string> host_names_;  // in lower case
   SnapshotBroadcaster& broadcaster_;
+  const Metrics* const metrics_;
   const PageLimits limits_;
   std::unordered_map<std::string, StaticResource> resources_;
   Connections connections_;
@@ -420,7 +427,8 @@ Expected<std::unique_ptr<PageServer>> PageServer::start(const std::string& addre
                                                         std::vector<StaticResource> resources,
                                                         SnapshotBroadcaster& broadcaster,
                                                         const PageLimits& limits,
-                                                        std::vector<std::string> host_names) {
+                                                        std::vector<std::string> host_names,
+                                                        const Metrics* metrics) {
   if (Expected<void> checked = check_listen_address(address); !checked)
     return tl::unexpected(checked.error());
   UniqueFd listening = listen_on(address, port, limits.connections);
@@ -433,7 +441,7 @@ Expected<std::unique_ptr<PageServer>> PageServer::start(const std::string& addre
   }
   const std::string url = "http://" + url_host(address) + ":" + std::to_string(port) + "/";
   auto http = std::make_unique<Http>(std::move(listening), address, std::move(resources), broadcaster, limits,
-                                     std::move(host_names));
+                                     std::move(host_names), metrics);
   return std::unique_ptr<PageServer>(new PageServer(std::move(http), url));
 }
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "view/live/metrics.h"
 #include "view/live/snapshot_broadcaster.h"
 
 namespace buoyancy::view {
@@ -42,12 +43,14 @@ class PageServer {
  public:
   // Listens and serves on threads of its own, which inherit the signal mask. port: 0 selects a free one.
   // "/events" streams from the broadcaster, which must outlive the server. host_names: further names, without
-  // ports. Errors: the port is not available.
+  // ports. metrics: served at "/metrics", and must outlive the server; nullptr: there is no such path. Errors: the
+  // port is not available.
   static Expected<std::unique_ptr<PageServer>> start(const std::string& address, int port,
                                                      std::vector<StaticResource> resources,
                                                      SnapshotBroadcaster& broadcaster,
                                                      const PageLimits& limits = {},
-                                                     std::vector<std::string> host_names = {});
+                                                     std::vector<std::string> host_names = {},
+                                                     const Metrics* metrics = nullptr);
   PageServer(const PageServer&) = delete;
   PageServer& operator=(const PageServer&) = delete;
   ~PageServer();  // closes the broadcaster and every connection
