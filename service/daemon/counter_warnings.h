@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/motion_check.h"
 #include "engine/pose_request_adapter.h"
 #include "messages/status.h"
 #include "scene/scene.h"
@@ -21,10 +22,10 @@ std::vector<LogEvent> warnings_since(const ServiceCounters& before, const Servic
 std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts& now,
                                      const BufferLimit& receive_buffer_limit);
 
-// The event of `count` poses without velocities on a channel; nullopt: its body needs none in this scene.
-// One of a few messages, with the finding as its detail.
+// One of three messages, with the finding as its detail.
 LogEvent to_log_event(const MotionFinding& finding);
 
+// The event of `count` poses without velocities on a channel; nullopt: its body needs none in this scene.
 std::optional<LogEvent> missing_velocities(const PoseChannel& pose, const Scene& scene, std::int64_t count);
 
 // One line of totals: "1200 requests: 1198 computed, 2 retries, ...".

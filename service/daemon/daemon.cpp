@@ -396,7 +396,8 @@ void Daemon::handle(Bytes request, double arrival, bool may_wait) {
                  seconds_now());
   }
   if (step == Step::kAnswered) send_reply(arrival);
-  if (is_new) publish_status_to_new_session();
+  has_new_session_ = has_new_session_ || is_new;
+  if (has_new_session_) publish_status_to_new_sessions();
   if (step == Step::kAnswered) return;
   const std::int64_t session_id = peek_request_id(request).value().session_id;
   const bool is_retry = std::ranges::find(arrivals_, session_id, &Arrival::session_id) != arrivals_.end();
@@ -506,8 +507,8 @@ void Daemon::prepare_for_scene() {
   publish_sea();
 }
 
-// Its client learns at once which scene it talks to.
-void Daemon::publish_status_to_new_session() {
+// Their clients learn at once which scene they talk to.
+void Daemon::publish_status_to_new_sessions() {
   constexpr double kMinInterval = 0.1;  // [s]: sessions may be begun as fast as requests
   if (seconds_now() - last_status_ >= kMinInterval) publish_status();
 }
@@ -517,6 +518,7 @@ void Daemon::publish_status() {
   const DropCounts drops = connection_.drop_counts();
   const double now = seconds_now();
   last_status_ = now;
+  has_new_session_ = false;
   encode(ServiceStatus{.utime = utime_now(),
                        .instance_id = instance_id_,
                        .version = BUOYANCY_VERSION,

@@ -122,7 +122,7 @@ class Daemon {
   bool publish(const std::string& channel, Bytes bytes);  // false: not sent, and added to warnings_
   void begin_reload();
   void end_reload();
-  void publish_status_to_new_session();
+  void publish_status_to_new_sessions();
   void publish_status();  // and the sea, and logs the warnings that are due
   void publish_sea();
   void warn_of_missing_velocities(double now);
@@ -151,7 +151,8 @@ class Daemon {
   std::int64_t reloads_failed_ = 0;
   bool last_reload_failed_ = false;
   std::int64_t send_failures_ = 0;
-  double last_status_ = 0.0;  // [s]
+  double last_status_ = 0.0;     // [s]
+  bool has_new_session_ = false;  // since the last status
   double queue_delay_ = 0.0;  // [s], longest since the last status
   InstanceMonitor instances_;
   RateLimitedLog warnings_;

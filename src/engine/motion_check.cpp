@@ -75,10 +75,10 @@ std::pair<const char*, const char*> explain(const MotionFinding& finding) {
 
 struct MotionCheck::Pair {
   double interval = 0.0;  // [s], > 0
-  Vec3 moved;             // [m] or [rad], W
-  double resolution = 0.0;
-  Vec3 stated_before, stated_now;  // [m/s] or [rad/s]
   BodyState before, now;
+  Vec3 moved = Vec3::Zero();  // [m] or [rad], W
+  double resolution = 0.0;    // likewise: a smaller motion says nothing
+  Vec3 stated_before = Vec3::Zero(), stated_now = Vec3::Zero();  // [m/s] or [rad/s]
 
   Vec3 stated() const { return 0.5 * interval * (stated_before + stated_now); }
 
@@ -144,7 +144,10 @@ std::optional<MotionFinding> MotionCheck::compare(const RequestView& before, con
   std::optional<MotionFinding> finding;
   const std::size_t bodies = std::min(before.size(), now.size());
   for (std::size_t place = 0; place < kBodies && first_ + place < bodies && !finding; ++place) {
-    Pair pair{.interval = interval, .before = before.body(first_ + place), .now = now.body(first_ + place)};
+    Pair pair;
+    pair.interval = interval;
+    pair.before = before.body(first_ + place);
+    pair.now = now.body(first_ + place);
     const BodyState &a = pair.before, &b = pair.now;
     if (a.body_id != b.body_id) continue;
     const bool is_zero = a.linear_velocity == b.linear_velocity && a.angular_velocity == b.angular_velocity &&
@@ -193,8 +196,10 @@ std::optional<MotionFinding> MotionCheck::compare_body(std::size_t place, bool i
   add_if(explains({stated.y(), stated.x(), -stated.z()}), MotionMistake::kNorthEastDown);
   add_if(stated.isZero(0.0), MotionMistake::kZero);
   add_if(scale != 0.0 && explains(streak.scale * stated), MotionMistake::kScale);
-  const bool is_explained = (mistakes & ~bit(MotionMistake::kZero)) != 0;
-  if (!is_explained && pair.interval > kShortInterval) return std::nullopt;
+  // The others are also what a vibration looks like that is sampled once in a period, or half of it.
+  constexpr unsigned kUnmistakable =
+      bit(MotionMistake::kQuaternionXyzw) | bit(MotionMistake::kBodyFrame) | bit(MotionMistake::kDegrees);
+  if ((mistakes & kUnmistakable) == 0 && pair.interval > kShortInterval) return std::nullopt;
 
   streak.mistakes = streak.contradictions == 0 ? mistakes : streak.mistakes & mistakes;
   ++streak.contradictions;

@@ -4,8 +4,9 @@
 // Two states of a body contradict each other if what the body moves between them, and what the two stated
 // velocities or their mean would move it, differ by more than half of the larger one. A single contradiction
 // means little: a body is placed elsewhere, or hits another. A finding needs kExplained contradictions in a
-// row that one mistake explains, each within a fifth, or kUnexplained ones, of requests less than 0.1 s
-// apart. Motion that is too slow to tell is passed over.
+// row that one mistake explains, each within a fifth, or kUnexplained ones. Only a body frame, degrees and the
+// order of a quaternion can be told from a vibration where requests are 0.1 s apart or more. Motion that is
+// too slow to tell is passed over.
 #pragma once
 
 #include <array>

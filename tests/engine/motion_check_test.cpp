@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "messages/wire.h"
+#include "tests/engine/box_scene.h"
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/support/byte_vector.h"
 
@@ -62,18 +62,19 @@ std::vector<MotionFinding> findings(const Motion& motion, int steps, const Chang
   std::vector<MotionFinding> found;
   std::array<ByteVector, 2> bytes;
   for (int step = 0; step <= steps; ++step) {
-    WrenchRequest request{
-        .id = {.utime = 1'000'000'000'000 + std::llround(step * interval * 1e6), .session_id = 5, .seq = step}};
+    WrenchRequest request;
+    request.id = {.utime = 1'000'000'000'000 + std::llround(step * interval * 1e6), .session_id = 5, .seq = step};
+    if (uses_velocities) request.lead_time = 1.0;
     for (int body = 0; body < bodies; ++body) {
       request.bodies.push_back(motion.at(step * interval));
       request.bodies.back().body_id += body;
       change(request.bodies.back(), step);
     }
     encode(request, bytes.at(step % 2));
-    if (step == 0) continue;
-    const auto before = RequestView::of(bytes.at((step + 1) % 2));
     const auto now = RequestView::of(bytes.at(step % 2));
-    if (const auto finding = check.compare(*before, *now, uses_velocities)) found.push_back(*finding);
+    const auto before = RequestView::of(bytes.at((step + 1) % 2));
+    const auto finding = check.check(step == 0 ? nullptr : &*before, *now, shared_box_scene());
+    if (finding) found.push_back(*finding);
   }
   return found;
 }
@@ -174,11 +175,14 @@ TEST(MotionCheck, AcceptsTheMotionAsItIs) {
       if (step % 7 == 0) state.angular_velocity = {9.0, -9.0, 9.0};
     };
     EXPECT_TRUE(findings(motion, 200, jumps, true).empty()) << i;
-    // One state in 0.3 s: a swing of any kind may hide between them.
-    const Change other = [](BodyState& state, int step) {
-      state.linear_velocity = {std::sin(1.7 * step), std::cos(2.9 * step), 1.0};
+    // A vibration that is sampled about once in a period.
+    const double period = random.uniform(0.1, 1.0);
+    const Change other = [&motion, period](BodyState& state, int step) {
+      const double w = 2.0 * M_PI / period, t = step * 0.3;
+      state.position = to_array(motion.start + motion.swing * std::sin(w * t));
+      state.linear_velocity = to_array(motion.swing * w * std::cos(w * t));
     };
-    EXPECT_TRUE(findings(motion, 200, other, true, 0.3).empty()) << i;
+    for (const MotionFinding& finding : findings(motion, 200, other, true, 0.3)) ADD_FAILURE() << finding.warning().message();
   }
 }
 
