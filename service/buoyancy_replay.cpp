@@ -105,7 +105,7 @@ int run_replay(const CLI::App& app, const ReplayOptions& options, const ReplayTa
                               : "; " + options.output.string() + " holds the responses written until then"));
   }
   if (!stopped) warn_of_missing_velocities(app, options, task);
-  for (const MotionFinding& finding : summary->motion.findings()) print_warning(app, finding.warning());
+  for (const std::string& doubt : summary->doubts) print_error(app, "warning: " + doubt);
   // A channel may have no events in one part only.
   if (!stopped && part == nullptr) warn_of_unseen(app, options, task.channels.unseen_channels());
   const std::string text =

@@ -13,6 +13,7 @@
 #include "hydrostatics/wetted_tree_sum.h"
 #include "recording/record_writer.h"
 #include "recording/staged_file.h"
+#include "scene/scene_fingerprint.h"
 #include "service/replay/content_hash.h"
 #include "service/replay/range_hash.h"
 #include "service/replay/replay_summary.h"
@@ -23,40 +24,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "buoyancy-replay part, version 1";
-
-template <typename Number>
-void add_numbers(ContentHash& hash, const std::vector<Number>& numbers) {
-  const std::uint64_t count = numbers.size();
-  hash.update({reinterpret_cast<const std::uint8_t*>(&count), sizeof(count)});
-  hash.update({reinterpret_cast<const std::uint8_t*>(numbers.data()), numbers.size() * sizeof(Number)});
-}
-
-// Of the geometry after import, validation and scaling: it also covers files that a mesh file refers to.
-// Which body has which mesh follows from the scene file.
-std::string hash_of_meshes(const Scene& scene) {
-  ContentHash hash;
-  for (const std::unique_ptr<PreparedMesh>& prepared : scene.meshes()) {
-    const HydrostaticMesh& mesh = prepared->mesh;
-    const Vec3& center = mesh.center_B;
-    add_numbers(hash, std::vector<double>{center.x(), center.y(), center.z()});
-    for (const std::vector<double>* coordinates : {&mesh.surface.x, &mesh.surface.y, &mesh.surface.z}) {
-      add_numbers(hash, *coordinates);
-    }
-    add_numbers(hash, mesh.surface.triangles);
-    add_numbers(hash, mesh.boundary_vertices);
-  }
-  return hash.text();
-}
-
-// Of the components as the scene describes them, which may be in a file of their own.
-std::string hash_of_sea(const Sea& sea) {
-  ContentHash hash;
-  for (const WaveComponent& component : sea.components()) {
-    add_numbers(hash, std::vector<double>{component.amplitude, component.angular_frequency,
-                                          component.direction, component.phase});
-  }
-  return hash.text();
-}
 
 Expected<std::string> hash_of_file(const std::filesystem::path& path) {
   Expected<FileWindow> file = FileWindow::open(path);
@@ -158,8 +125,8 @@ Expected<ReplayFacts> replay_facts(const ReplayOptions& options, const Scene& sc
     facts.emplace_back("--tolerance", format_shortest(options.tolerance));
     facts.emplace_back("--open", options.open == OpenPolicy::kRefuse ? "refuse" : "dry_boundary");
   }
-  facts.emplace_back("meshes", hash_of_meshes(scene));
-  if (scene.sea() != nullptr) facts.emplace_back("sea", hash_of_sea(*scene.sea()));
+  // Also covers files that the scene file and mesh files refer to.
+  facts.emplace_back("scene, meshes and waves", std::to_string(scene_fingerprint(scene)));
   facts.emplace_back("formats",
                      options.input.extension().string() + " to " + options.output.extension().string());
   facts.emplace_back("size of INPUT", std::to_string(input_size));

@@ -19,7 +19,7 @@
 namespace buoyancy::service {
 
 // Everything besides INPUT's bytes that the responses depend on, as names and values: the version of the
-// program, the instruction set, the scene file, the meshes as imported, the options, the size of INPUT. Only
+// program, the instruction set, the scene file, the scene's fingerprint, the options, the size of INPUT. Only
 // parts with equal facts can be joined.
 using ReplayFacts = std::vector<std::pair<std::string, std::string>>;
 

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/motion_check.h"
 #include "engine/thread_pool.h"
 #include "service/replay/replay_batch.h"
 
@@ -26,6 +27,7 @@ struct Round {
 struct Received {
   SeaTimeline seas;
   ConditionTimeline conditions;
+  MotionMonitor motion{};
 };
 
 bool is_in_pose_session(const PoseRequestAdapter& poses, Bytes request) {
@@ -53,7 +55,7 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, Received& rec
   }
   if (role.request) {
     batch.add_request(event.timestamp, event.bytes, {});
-    summary.motion.add(event.bytes, task.scene);
+    received.motion.add(event.bytes, task.scene);
     if (!event.channel.empty()) {
       if (const auto id = peek_request_id(event.bytes)) summary.requests->add(id->session_id, id->seq);
     }
@@ -61,7 +63,7 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, Received& rec
   }
   if (!role.pose) return;
   if (const auto request = task.poses.make_request(*role.pose, event.bytes)) {
-    summary.motion.add(*request, task.scene);
+    received.motion.add(*request, task.scene);
     batch.add_request(event.timestamp, *request, task.poses.channels()[*role.pose].force_torque_channel);
   } else {
     batch.add_rejected_pose(event.timestamp, request.error());
@@ -197,6 +199,9 @@ Expected<ReplaySummary> replay(const ReplayTask& task, TerminationSignals& signa
   const ReplaySummary sum = total();
   summary.counters = sum.counters;
   summary.copied = sum.copied;
+  for (const MotionFinding& finding : received.motion.findings()) {
+    summary.doubts.push_back(finding.warning().message());
+  }
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return summary;
 }

@@ -276,6 +276,13 @@ JoinResult Join::sum() const {
   result.unseen_channels = manifests_.front().unseen_channels;
   for (const PartManifest& manifest : manifests_) {
     result.summary.counters += manifest.summary.counters;
+    for (const std::string& doubt : manifest.summary.doubts) {
+      // Every part finds the mistake of a session anew.
+      const std::string subject = doubt.substr(0, doubt.find(" = "));
+      const bool is_known = std::ranges::any_of(
+          result.summary.doubts, [&subject](const std::string& each) { return each.starts_with(subject); });
+      if (!is_known) result.summary.doubts.push_back(doubt);
+    }
     result.summary.copied += manifest.summary.copied;
     result.summary.corrupt_sections += manifest.summary.corrupt_sections;
     result.summary.seconds += manifest.summary.seconds;

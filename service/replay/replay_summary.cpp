@@ -109,9 +109,7 @@ std::string summary_text(const ReplaySummary& summary, const ReplayComparison* c
                         counters.conditions_received + counters.conditions_rejected);
     line("rejected", counters.conditions_rejected);
   }
-  if (const std::size_t contradictions = summary.motion.findings().size(); contradictions > 0) {
-    text += fmt::format("{:<22}{:>12}\n", "velocities in doubt", contradictions);
-  }
+  if (!summary.doubts.empty()) text += fmt::format("{:<22}{:>12}\n", "velocities in doubt", summary.doubts.size());
   if (summary.copied > 0) text += fmt::format("{:<22}{:>12}\n", "events copied", summary.copied);
   text += fmt::format("{:<22}{:>12}\n", "corrupt sections", summary.corrupt_sections);
   text += fmt::format("{:<22}{:>12.3f}\n", "seconds", summary.seconds);
@@ -140,6 +138,7 @@ nlohmann::ordered_json summary_to_json(const ReplaySummary& summary) {
           {"bodies", bodies},
           {"conditions_received", counters.conditions_received},
           {"conditions_rejected", counters.conditions_rejected},
+          {"velocities_in_doubt", summary.doubts},
           {"copied", summary.copied},
           {"corrupt_sections", summary.corrupt_sections},
           {"seconds", summary.seconds},
@@ -162,6 +161,7 @@ ReplaySummary summary_from_json(const nlohmann::ordered_json& json) {
   }
   json.at("conditions_received").get_to(counters.conditions_received);
   json.at("conditions_rejected").get_to(counters.conditions_rejected);
+  json.at("velocities_in_doubt").get_to(summary.doubts);
   json.at("copied").get_to(summary.copied);
   json.at("corrupt_sections").get_to(summary.corrupt_sections);
   json.at("seconds").get_to(summary.seconds);
@@ -172,9 +172,6 @@ std::string summary_json(const ReplaySummary& summary, const ReplayComparison* c
   nlohmann::ordered_json json = summary_to_json(summary);
   if (summary.requests && summary.requests->missing() > 0)
     json["requests_not_recorded"] = summary.requests->missing();
-  for (const MotionFinding& finding : summary.motion.findings()) {
-    json["velocities_in_doubt"].push_back(finding.warning().message());
-  }
   if (comparison != nullptr) json["compared"] = comparison_json(*comparison);
   return json.dump(2) + "\n";
 }

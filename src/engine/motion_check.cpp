@@ -83,8 +83,9 @@ struct MotionCheck::Pair {
   Vec3 stated() const { return 0.5 * interval * (stated_before + stated_now); }
 
   bool is_telling() const {
-    const double size = std::max(moved.norm(), stated().norm());
-    return std::isfinite(size) && size > kSlow * interval && size > resolution;
+    const double a = moved.norm(), b = stated().norm();
+    const double size = std::max(a, b);
+    return std::isfinite(a) && std::isfinite(b) && size > kSlow * interval && size > resolution;
   }
   bool is_contradiction() const {
     return !is_within(kDisagreement, moved, stated()) &&

@@ -43,7 +43,7 @@ void warn_of_density(const Body& body, BodyWarningList& list) {
   if (!body.dynamics.density) return;
   const double density = *body.dynamics.density;
   if (density >= kMinDensity && density <= kMaxDensity) return;
-  list.add(body, {"", "density = " + format_number(density, 4) + " kg/m^3",
+  list.add(body, {"", "density = " + format_number(density, 6) + " kg/m^3",
                   format_number(kMinDensity) + " to " + format_number(kMaxDensity) + " kg/m^3",
                   "grams per cubic centimetre, or a mass", "Give kg/m^3, or the key mass (kg)"});
 }

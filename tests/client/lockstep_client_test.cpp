@@ -16,7 +16,7 @@ TEST(LockstepClient, AcceptsOnlyResponseToItsRequest) {
   const FakeService service([](const WrenchRequest& request) {
     WrenchResponse other_session = response_to(request, 1.0);
     other_session.id.session_id += 1;
-    WrenchResponse earlier = response_to(request, 2.0);
+    WrenchResponse earlier = response_to(request, 9.0);  // as it was answered
     earlier.id.seq -= 1;
     WrenchResponse later = response_to(request, 3.0);
     later.id.seq += 1;
@@ -41,6 +41,20 @@ TEST(LockstepClient, AcceptsOnlyResponseToItsRequest) {
   EXPECT_EQ(client.statistics().requests, 20);
   EXPECT_EQ(client.statistics().round_trip.count(), 20);
   EXPECT_GE(client.statistics().malformed, 40);  // more if the machine is so slow that it retries
+}
+
+TEST(LockstepClient, FailsWhereTwoResponsesToARequestContradict) {
+  for (const double second : {9.0, 9.5}) {
+    const FakeService service([second](const WrenchRequest& request) {
+      return Responses{encoded(response_to(request, 9.0)), encoded(response_to(request, second))};
+    });
+    LockstepClient client(open_channel(), kTestRetryPolicy);
+    ASSERT_TRUE(client.request(make_request(0)));
+    const Expected<const WrenchResponse*> response = client.request(make_request(1));
+    ASSERT_EQ(response.has_value(), second == 9.0);
+    if (response) continue;
+    EXPECT_TRUE(contains(response.error().message(), "two responses to request 0: body 5 has OK, force"));
+  }
 }
 
 TEST(LockstepClient, ResendsRequestUntilResponseArrives) {

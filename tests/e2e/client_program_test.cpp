@@ -75,7 +75,7 @@ TEST_F(BuoyancyClient, ReportsRollAndPitchWithSigns) {
   // The body does not move: without gravity neither weight nor buoyancy acts.
   const auto still = [&](const std::string& orientation) {
     const std::string path = directory_.write(
-        "still.toml", crate("[world]\ngravity = 0\n", "density = 1\norientation = " + orientation + "\n"));
+        "still.toml", crate("[world]\ngravity = 0\n", "density = 100\norientation = " + orientation + "\n"));
     return body(simulate(path, {"--embedded", "--duration", "0.01"}), 1);
   };
   // A rotation of 0.2 rad about x, one about y, and both after a yaw of 1 rad: Rz(1) Ry(0.2) Rx(0.3).

@@ -58,6 +58,11 @@ double printed_heave_period(const FinishedProcess& run) {
   return period;
 }
 
+// That the service sees no contradiction between velocities and motion.
+void expect_consistent_motion(const RunningProgram& service) {
+  EXPECT_FALSE(contains(service.standard_error(), "contradict"));
+}
+
 void expect_crate_settles_level(const ChildCommand& service_of_scene, Options program) {
   const RunningProgram service(service_of_scene);
   program.insert(program.end(), {"", kStep});
@@ -69,6 +74,7 @@ void expect_crate_settles_level(const ChildCommand& service_of_scene, Options pr
       << run.standard_output;
   EXPECT_NEAR(height, 0.0, 1e-6);
   EXPECT_NEAR(tilt, 0.0, 1e-3);
+  expect_consistent_motion(service);
 }
 
 // As an explicit force, an added mass of 20 times the mass would diverge within a few steps.
@@ -90,6 +96,7 @@ immersion = "none"
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
   const double expected = heave_period(kMass, 20.0 * kMass, 1.0);
   EXPECT_NEAR(printed_heave_period(run), expected, 1e-3 * expected) << run.standard_output;
+  expect_consistent_motion(service);
 }
 
 TEST(Examples, BulletCrateSettlesLevel) {
@@ -150,6 +157,7 @@ FinishedProcess run_mujoco(const std::string& scene, const std::string& model, c
         6)
         << run.standard_output;
   }
+  expect_consistent_motion(service);
   return run;
 }
 

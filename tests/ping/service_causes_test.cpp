@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scene/scene_fingerprint.h"
 #include "tests/ping/two_scenes.h"
 #include "tests/support/contains.h"
 #include "tests/support/damaged_boxes.h"
@@ -28,6 +29,9 @@ TEST(ServiceCauses, NameWhatStatusTells) {
   service.status.emplace();
   service.status->version = BUOYANCY_VERSION;
   service.status->scene_bodies = 2;
+  service.status->scene_fingerprint = scene_fingerprint(scene);
+  service.instance_ids = {1};
+  EXPECT_TRUE(service_warnings(scene, service).empty());
   EXPECT_TRUE(causes_from_service(scene, service).empty());
   service.status->version = "0.1";
   service.status->scene = "/etc/other.toml";
@@ -36,6 +40,28 @@ TEST(ServiceCauses, NameWhatStatusTells) {
   const std::string found = joined(causes_from_service(scene, service));
   for (const char* const part : {"2 services", "/etc/other.toml with 3 bodies", "version 0.1"}) {
     EXPECT_TRUE(contains(found, part));
+  }
+}
+
+TEST(ServiceWarnings, NameEachThingThatAUserHasToKnow) {
+  const Scene scene = SceneText{}.scene();
+  using Change = std::pair<const char*, std::function<void(ServiceInfo&)>>;
+  for (const auto& [text, change] : std::initializer_list<Change>{
+           {"1 other service on the channel of its status", [](ServiceInfo& now) { now.instance_ids = {1, 2}; }},
+           {"2 other services", [](ServiceInfo& now) { now.status->other_services = 2; }},
+           {"its scene  is not that of", [](ServiceInfo& now) { ++now.status->scene_fingerprint; }},
+           {"2 velocities that contradict the motion",
+            [](ServiceInfo& now) { now.status->counters.motions_contradicting = 2; }},
+           {"1 session with quaternions that look like x, y, z, w",
+            [](ServiceInfo& now) { now.status->counters.quaternions_xyzw = 1; }}}) {
+    ServiceInfo service;
+    service.status.emplace();
+    service.status->scene_fingerprint = scene_fingerprint(scene);
+    service.instance_ids = {1};
+    change(service);
+    const std::vector<Warning> warnings = service_warnings(scene, service);
+    ASSERT_EQ(warnings.size(), 1U) << text;
+    EXPECT_TRUE(contains(warnings[0].message(), text));
   }
 }
 
@@ -79,6 +105,7 @@ TEST(ServiceCauses, NameConditionsThatTheServiceReceived) {
   service.status.emplace();
   service.status->version = BUOYANCY_VERSION;
   service.status->scene_bodies = 3;
+  service.status->scene_fingerprint = scene_fingerprint(scene);
   EXPECT_TRUE(causes_from_service(scene, service).empty());
   service.status->counters.conditions_received = 2;
   EXPECT_TRUE(contains(joined(causes_from_service(scene, service)), "has received 2 conditions"));

@@ -115,7 +115,7 @@ class ExchangesMessagesWithTheService(TestCase):
             self.assertEqual(list(status), re.findall(r"^  (?:int32_t|int64_t|double|string) (\w+);", message, re.M))
             self.assertEqual((status["scene_bodies"], status["scene"], status["requests"], status["bodies_ok"]),
                              (2, self.path, 1, 1))
-            self.assertEqual(status["version"], buoyancy.__version__)
+            self.assertRegex(status["version"], r"^\d+\.\d+\.\d+$")
             self.assertGreater(client.status(timeout=TIMEOUT)["uptime"], status["uptime"])
             with self.assertRaisesRegex(ValueError, "timeout = 0; expected seconds above 0"):
                 client.status(timeout=0)
@@ -127,8 +127,8 @@ class ExchangesMessagesWithTheService(TestCase):
         other = buoyancy.Scene.from_text(SCENE.replace("10, 10, 10", "10, 10, 11"))
         with Service(self.path), buoyancy.Client(scene=other, **LONG_WAIT) as client:
             with self.assertWarnsRegex(UserWarning, "another scene, from its file"):
-                for _ in range(1000):
-                    client.request(8, (0, 0, 0), (1, 0, 0, 0))
+                client.status(timeout=TIMEOUT)
+                client.request(8, (0, 0, 0), (1, 0, 0, 0))
 
     def test_loads_and_unknown_bodies(self):
         with Service(self.path), buoyancy.Client(loads=True, **LONG_WAIT) as client:

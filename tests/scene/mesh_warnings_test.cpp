@@ -33,11 +33,15 @@ TEST(MeshWarnings, NoteAMeshInAnotherUnit) {
 }
 
 TEST(MeshWarnings, SayNothingOfWhatFloatsOrSinks) {
-  for (const std::string mass : {"mass = 20", "mass = 700", "mass = 20000", "density = 1", ""}) {
+  for (const std::string mass : {"mass = 20", "mass = 700", "mass = 20000", "density = 20", "density = 20000", ""}) {
     EXPECT_TRUE(warnings_of("[1, 1, 1]", mass).empty()) << mass;
   }
   EXPECT_EQ(warnings_of("[1, 1, 1]", "mass = 19.99").size(), 1U);
   EXPECT_EQ(warnings_of("[1, 1, 1]", "mass = 20000.1").size(), 1U);
+  EXPECT_THAT(warnings_of("[1, 1, 1]", "density = 19.9"), ElementsAre(HasSubstr("density = 19.9 kg/m^3")));
+  EXPECT_THAT(warnings_of("[1, 1, 1]", "density = 20001"), ElementsAre(HasSubstr("density = 20001 kg/m^3")));
+  EXPECT_TRUE(warnings_of("[600, 800, 0.1]", "density = 700").size() == 1) << "1000.000005 m";
+  EXPECT_TRUE(warnings_of("[600, 799, 0.1]", "density = 700").empty());
 }
 
 TEST(MeshWarnings, ArePartOfThoseOfAScene) {

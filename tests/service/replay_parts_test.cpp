@@ -450,7 +450,7 @@ TEST_F(JoinOfParts, RefusesPartsOfOtherMesh) {
   std::filesystem::remove(output());
   write("mesh.obj", std::string(pyramid).replace(pyramid.find("1 1 2"), 5, "1.5 1 2"));
   run_again(2, {});
-  expect_refused({"part 2 of 4 computed with another meshes"});
+  expect_refused({"part 2 of 4 computed with another scene, meshes and waves"});
 }
 
 TEST_F(JoinOfParts, RefusesPartsOfOtherVersionOrInstructionSet) {

@@ -211,7 +211,7 @@ TEST_F(ReportData, IsPlottedColumnByColumn) {
     bool of_responses;  // which have no meaning unless their status is OK
     double scale = 1.0;
   };
-  for (const Series& one : {Series{"heave", "B's origin over the water", kHeave, false},
+  for (const Series& one : {Series{"heave", "height of the body's origin above the water", kHeave, false},
                             {"angles", "roll", kRoll, false},
                             {"angles", "pitch", kPitch, false},
                             {"force", "x", kFx, true},
@@ -264,23 +264,23 @@ TEST_F(ReportData, IsThatOfTheSelectedBody) {
 
 TEST_F(ReportData, IsListedCellByCell) {
   EXPECT_EQ(cells_of(browser(), "#tables"), parse_json(R"([
-    [["4", "hull", "12", "OK 7, OPEN_EDGE_WET 3, defined by a later version 1, no response recorded 1", "1,234.5", "yes"],
+    [["4", "hull", "12", "OK 7, OPEN_EDGE_WET 3, defined by a later version 1, no response recorded 1", "1,235", "yes"],
      ["9", "rock", "1", "no response recorded 1", "–", "yes"]],
-    [["4 hull", "partially submerged: computed", "40", "20.0 %", "2.00 µs", "0.00 ns"],
+    [["4 hull", "partially submerged: computed", "40", "20.0 %", "2.00 µs", "–"],
      ["4 hull", "dry: from the bounds", "20", "10.0 %", "50.0 ns", "39.0 µs"],
      ["4 hull", "fully submerged: from bounds and constants", "30", "15.0 %", "50.0 ns", "58.5 µs"],
      ["4 hull", "unchanged pose: cached result", "10", "5.0 %", "50.0 ns", "19.5 µs"],
      ["4 hull", "invalid pose: rejected", "100", "50.0 %", "–", "–"]],
     [["4 hull", "OK", "4", "80.0 %"],
      ["4 hull", "OPEN_EDGE_WET: the mesh is open and its boundary is not entirely dry", "1", "20.0 %"]],
-    [["version", "9.8.7"], ["uptime", "1,234.5 s"], ["requests", "1,001"], ["computed", "1,002"], ["retries", "1,003"],
+    [["version", "9.8.7"], ["uptime", "1,235 s"], ["requests", "1,001"], ["computed", "1,002"], ["retries", "1,003"],
      ["superseded", "1,004"], ["rejected", "1,005"],
      ["bodies dry, fully submerged, partially submerged, unchanged", "1,006, 1,007, 1,008, 1,009"],
      ["latency, median, 99 %, maximum", "10.0 µs, 20.0 µs, 40.0 µs"]],
     [["4", "hull", "box", "hierarchical", "0", "9,000", "300"],
-     ["9", "rock", "rock", "hierarchical", "0", "1,849.8", "506"]],
-    [["box", "48", "48", "30", "62", "6.16441", "1", "closed"],
-     ["rock", "80", "80", "3.65572", "11.7407", "3.51485", "1", "closed"]]])"));
+     ["9", "rock", "rock", "hierarchical", "0", "1,850", "506"]],
+    [["box", "48", "48", "30", "62", "6.164", "1", "closed"],
+     ["rock", "80", "80", "3.656", "11.74", "3.515", "1", "closed"]]])"));
   EXPECT_NE(text_of("#tables").find("total 117 µs saved, 83.0 µs spent"), std::string::npos);
   EXPECT_NE(text_of("#tables").find("level 1.75 m along [0.36, 0.48, 0.8], 1,012 kg/m³, gravity 9.7 m/s²"),
             std::string::npos);
@@ -429,7 +429,7 @@ TEST_F(LiveData, IsTrackedUntilTheClockGoesBack) {
   send({snapshot(10.0, 0.5), snapshot(10.05, 9.0), snapshot(10.2, 0.25), snapshot(40.0, -1.5),
         snapshot(70.1, 0.75)});
   EXPECT_EQ(label(2),
-            "Heave of the body in m over time from -59.9 to 0 s: origin over the level from -1.5 to 0.75, "
+            "Heave of the body in m over time from -59.9 to 0 s: height of the body's origin above the still water level from -1.5 to 0.75, "
             "at the end 0.75")
       << "a minute";
   EXPECT_EQ(label(3),
@@ -439,7 +439,7 @@ TEST_F(LiveData, IsTrackedUntilTheClockGoesBack) {
   failed["bodies"][0]["status"] = 6;
   send({failed});
   EXPECT_EQ(label(2),
-            "Heave of the body in m over time from -31 to 0 s: origin over the level from -1.5 to 2, at the "
+            "Heave of the body in m over time from -31 to 0 s: height of the body's origin above the still water level from -1.5 to 2, at the "
             "end 2");
   EXPECT_EQ(label(3),
             "Buoyant force on the body in N over time from -31 to 0 s: upwards from -1,500 to 750, at the "
@@ -449,7 +449,7 @@ TEST_F(LiveData, IsTrackedUntilTheClockGoesBack) {
   for (int start = 0; start < 2; ++start) {
     send({snapshot(3.0, 0.5), snapshot(5.0, 0.125)});
     EXPECT_EQ(label(2),
-              "Heave of the body in m over time from -2 to 0 s: origin over the level from 0.125 to 0.5, at "
+              "Heave of the body in m over time from -2 to 0 s: height of the body's origin above the still water level from 0.125 to 0.5, at "
               "the end 0.125");
   }
   // A body that appears later has no points before.
@@ -459,7 +459,7 @@ TEST_F(LiveData, IsTrackedUntilTheClockGoesBack) {
   send({more});
   browser().run("buoyancyView.select(9)");
   EXPECT_EQ(label(2),
-            "Heave of the body in m over time from -3 to 0 s: origin over the level from 0.25 to 0.25, at "
+            "Heave of the body in m over time from -3 to 0 s: height of the body's origin above the still water level from 0.25 to 0.25, at "
             "the end 0.25");
 }
 

@@ -177,7 +177,7 @@ TEST_F(ReportPageOfTanks, TintsAndListsWhatIsInside) {
   EXPECT_EQ(table, nlohmann::json({{"engine room", "compartment", "2", "permeability 0.85", "25", "–", "–"},
                                    {"hold", "compartment", "2", "permeability 1", "0", "–", "–"},
                                    {"wide", "tank", "12", "1,000 kg/m³", "–", "6", "50"},
-                                   {"ring", "tank", "3", "850 kg/m³", "–", "1.25", "41.6667"}}));
+                                   {"ring", "tank", "3", "850 kg/m³", "–", "1.25", "41.67"}}));
   EXPECT_TRUE(
       contains(browser().run("return document.getElementById('legend').textContent;").get<std::string>(),
                "flooded compartment"));

@@ -110,7 +110,7 @@
       make: bus_series([['median', (second) => milliseconds(second.p50)], ['99 %', (second) => milliseconds(second.p99)]]) },
     { title: 'Messages', unit: '1/s', missing: no_data,
       make: bus_series([['requests', (second) => second.requests], ['responses', (second) => second.responses], ['unanswered', (second) => second.unanswered]]) },
-    { title: 'Heave of the body', unit: 'm', missing: no_data, make: body_series('origin over the level', 'heave') },
+    { title: 'Heave of the body', unit: 'm', missing: no_data, make: body_series('height of the body\'s origin above the still water level', 'heave') },
     { title: model.loads ? 'Force of the water on the body' : 'Buoyant force on the body', unit: 'N', missing: no_data, make: body_series('upwards', 'force') },
   ];
   for (const plot of plots) {

@@ -11,12 +11,20 @@ function round_ticks(low, high, max_ticks) {
   return { ticks, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
 }
 
+// At most four significant digits, but all of a whole number below a million.
 function format_number(value) {
+  return Number.isInteger(value) && Math.abs(value) < 1e6 ? (value || 0).toLocaleString('en') : format_digits(value, 1);
+}
+
+// Four significant digits, so that a number that changes keeps its width.
+const format_fixed = (value) => format_digits(value, 4);
+
+function format_digits(value, least) {
   if (!Number.isFinite(value)) return '–';
   if (value === 0) return '0';  // also for -0
   const magnitude = Math.abs(value);
   if (magnitude < 1e-3 || magnitude >= 1e6) return value.toExponential(3);
-  return value.toLocaleString('en', { maximumSignificantDigits: 6 });
+  return value.toLocaleString('en', { minimumSignificantDigits: least, maximumSignificantDigits: 4 });
 }
 
 function svg_element(name, attributes, parent) {
@@ -28,10 +36,11 @@ function svg_element(name, attributes, parent) {
 
 class Plot {
   // parent: the containing element. series: [{name, times, values}], at most sixteen. on_seek(time): called when the user
-  // points at a time. missing: text shown if there are no values. across: the quantity that `times` are, if not the time.
+  // points at a time. scale: values below 1e-9 of it are rounding, shown as 0. missing: text shown if there are no values. across: the quantity that `times` are, if not the time.
   // marks: [{time, text}], vertical lines, ascending in time.
-  constructor(parent, { title, unit, series, on_seek, missing = 'not recorded', across = { name: 'time', unit: ' s' }, marks = [] }) {
+  constructor(parent, { title, unit, series, on_seek, scale = 0, missing = 'not recorded', across = { name: 'time', unit: ' s' }, marks = [] }) {
     this.missing = missing;
+    this.scale = scale;
     this.across = across;
     this.marks = marks;
     this.figure = document.createElement('figure');
@@ -111,7 +120,7 @@ class Plot {
     }
     // A constant series is drawn in the middle instead of magnifying its rounding errors.
     const middle = 0.5 * (range.low + range.high);
-    const half = Math.max(0.5 * (range.high - range.low), 1e-9 * Math.abs(middle), 1e-12);
+    const half = Math.max(0.5 * (range.high - range.low), 1e-9 * Math.abs(middle), 1e-9 * this.scale, 1e-12);
     const low = middle - 1.08 * half, high = middle + 1.08 * half;
     const end = range.end > range.start ? range.end : range.start + 1;
     this.x = (time) => left + (time - range.start) / (end - range.start) * (width - left - right);
@@ -125,8 +134,10 @@ class Plot {
     }
     const columns = round_ticks(range.start, end, Math.max(2, Math.floor(width / 90)));
     for (const tick of columns.ticks) {
-      const label = svg_element('text', { x: this.x(tick), y: height - 5, 'text-anchor': 'middle' }, this.svg);
-      label.textContent = `${tick.toFixed(columns.digits)}${this.across.unit}`;
+      const text = `${tick.toFixed(columns.digits)}${this.across.unit}`;
+      const half_width = 3.4 * text.length;  // of digits of 11 px
+      const x = Math.min(this.x(tick), width - half_width);
+      svg_element('text', { x, y: height - 5, 'text-anchor': 'middle' }, this.svg).textContent = text;
     }
     this.draw_marks(range, top, height - bottom);
     this.draw_series(y);
@@ -188,7 +199,8 @@ class Plot {
     this.now.setAttribute('x1', this.x(time));
     this.now.setAttribute('x2', this.x(time));
     this.series.forEach(({ name, times, values }, i) => {
-      this.readings[i].textContent = `${name} ${format_number(values[row_at(times, time)])}`;
+      const value = values[row_at(times, time)];
+      this.readings[i].textContent = `${name} ${format_fixed(Math.abs(value) < 1e-9 * this.scale ? 0 : value)}`;
     });
   }
 
@@ -213,7 +225,9 @@ function row_at(times, time) {
 // A table with a caption, column headings and rows of cells. A column of numbers is right-aligned.
 function table_of(caption, heads, rows) {
   const table = document.createElement('table');
-  table.createCaption().textContent = caption;
+  const text = document.createElement('span');
+  text.textContent = caption;
+  table.createCaption().append(text);
   const head = table.createTHead().insertRow();
   const numeric = heads.map((_, i) => rows.length > 0 && rows.every((row) => typeof row[i] === 'number' || row[i] === null));
   heads.forEach((text, i) => {

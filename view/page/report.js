@@ -59,12 +59,17 @@
   }
   let drawn_sea = null;
 
-  // is_valid: whether a row's value has a meaning; a response whose status is not OK holds zeros.
+  const diagonal = (body) => data.model.meshes[body.description.mesh].diagonal;
+  const largest_force = (body) => ['fx', 'fy', 'fz'].reduce((most, name) =>
+    body.columns[name].reduce((a, b) => (Math.abs(b) > a ? Math.abs(b) : a), most), 0);
+  // scale_of_body: of a body's values, see Plot. is_valid: whether a row's value has a meaning; a response whose status is not OK holds zeros.
   const groups = [
-    { key: 'heave', title: 'Heave', unit: 'm', columns: { [seas.length > 0 ? 'B\'s origin over the level' : 'B\'s origin over the water']: 'heave' }, is_valid: has_pose },
-    { key: 'angles', title: 'From upright', unit: 'degrees', columns: { roll: 'roll', pitch: 'pitch' }, is_valid: has_pose },
-    { key: 'force', title: 'Buoyant force', moving: 'Force of the water', unit: 'N', columns: { z: 'fz', x: 'fx', y: 'fy' }, is_valid: is_ok },
-    { key: 'torque', title: 'Buoyant torque', moving: 'Torque of the water', unit: 'N m', columns: { z: 'tz', x: 'tx', y: 'ty' }, is_valid: is_ok },
+    { key: 'heave', title: 'Heave', unit: 'm', columns: { [`height of the body's origin above the ${seas.length > 0 ? 'still water level' : 'water'}`]: 'heave' }, is_valid: has_pose,
+      scale_of_body: diagonal },
+    { key: 'angles', title: 'Roll and pitch, 0 upright', unit: 'degrees', scale_of_body: () => 180, columns: { roll: 'roll', pitch: 'pitch' }, is_valid: has_pose },
+    { key: 'force', title: 'Buoyant force', moving: 'Force of the water', unit: 'N', columns: { z: 'fz', x: 'fx', y: 'fy' }, is_valid: is_ok, scale_of_body: largest_force },
+    { key: 'torque', title: 'Buoyant torque', moving: 'Torque of the water', unit: 'N m', columns: { z: 'tz', x: 'tx', y: 'ty' }, is_valid: is_ok,
+      scale_of_body: (body) => largest_force(body) * diagonal(body) },
     { key: 'energy', title: 'Mechanical energy', moving: 'Mechanical energy, not conserved', unit: 'J', columns: { energy: 'energy' }, is_valid: is_ok,
       missing: 'unknown: requires velocities and the mass of the body in the scene' },
     { key: 'round_trip', title: 'Round trip', unit: 'ms', columns: { 'request to response': 'round_trip' }, is_valid: () => true, scale: 1e3,
@@ -77,9 +82,11 @@
   }
   // A plot's title for the selected body; `moving`: where drag or added mass contribute.
   const title_of = (group) => (group.moving && selected.loads && has_hydrodynamics(selected.description) ? group.moving : group.title);
+  const scale_of = (group) => (group.scale_of_body ? group.scale_of_body(selected) : 0);
   const plots = {};
   for (const group of groups) {
-    plots[group.key] = new Plot(element('plots'), { title: title_of(group), unit: group.unit, series: series_of(group), on_seek: seek, missing: group.missing });
+    plots[group.key] = new Plot(element('plots'), { title: title_of(group), unit: group.unit, series: series_of(group), on_seek: seek,
+                                                       scale: scale_of(group), missing: group.missing });
   }
   if (data.model.loads) plots.loads = new LoadPlots(element('plots'), plots.force.figure, data.model, seek);
   function update_loads() {
@@ -140,7 +147,10 @@
   function select(id) {
     selected = bodies.find((body) => body.id === id) || selected;
     element('body').value = String(selected.id);
-    for (const group of groups) plots[group.key].update(series_of(group), title_of(group));
+    for (const group of groups) {
+      plots[group.key].scale = scale_of(group);
+      plots[group.key].update(series_of(group), title_of(group));
+    }
     update_loads();
     show();
   }

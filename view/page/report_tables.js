@@ -60,7 +60,7 @@ function evaluations_table(bodies) {
       saved += gain || 0;
       spent += cost === null ? 0 : 1e-9 * count * cost;
       rows.push([`${body.id} ${name}`, evaluation, count, `${(100 * count / total).toFixed(1)} %`,
-                 cost === null ? '–' : seconds_text(1e-9 * cost), gain === null ? '–' : seconds_text(gain)]);
+                 cost === null ? '–' : seconds_text(1e-9 * cost), gain ? seconds_text(gain) : '–']);
     };
     add('partially submerged: computed', crossing, query);
     add('dry: from the bounds', dry, bounds);

@@ -384,7 +384,7 @@ function make_water_scene(canvas, model) {
 
 // Adds the meaning of the colours as list items. with_loads: the descriptions of the bodies whose loads can be known.
 function fill_legend(list, with_mass, with_metacentre, with_loads = []) {
-  const entries = [['dry', 'dry hull', ''], ['wet', 'wetted hull', ''], ['waterline', 'waterline', 'bar'], ['water', 'water', ''],
+  const entries = [['dry', 'dry hull', ''], ['wet', 'wetted hull', ''], ['waterline', 'waterline', 'bar'], ['water', 'water', 'water'],
                    ['force', 'buoyant force, at the centre of buoyancy', 'round']];
   if (with_mass) entries.push(['weight', 'weight', 'bar'], ['centre_of_mass', 'centre of mass', 'round']);
   if (with_metacentre) entries.push(['metacentre', 'metacentre (of the softer axis)', 'ring']);
