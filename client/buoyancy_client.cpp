@@ -210,7 +210,8 @@ int simulate(Arguments arguments) {
           warn(std::move(warning));
         }
       }
-      if (const Warning* const other_scene = scene_warning(*client); other_scene != nullptr && !has_other_scene) {
+      if (const Warning* const other_scene = scene_warning(*client);
+          other_scene != nullptr && !has_other_scene) {
         has_other_scene = true;
         progress.clear();
         warn(*other_scene);

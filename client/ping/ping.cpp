@@ -19,8 +19,8 @@ namespace {
 
 // Requests in a row without a reply after which the run ends; before the first reply: one.
 constexpr std::int64_t kMaxUnansweredInARow = 3;
-// How long to look out for a status, which comes when a session begins and once a second, from the start of the
-// run.
+// How long to look out for a status, which comes when a session begins and once a second, from the start of
+// the run.
 constexpr std::chrono::seconds kStatusTimeout{2};
 constexpr std::int64_t kTimeBetweenRequests = 100'000;  // [us], simulated
 

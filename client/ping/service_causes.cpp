@@ -90,17 +90,19 @@ std::vector<Warning> service_warnings(const Scene& scene, const ServiceInfo& ser
   const ServiceStatus& status = *service.status;
   const std::string subject = "the service (instance " + std::to_string(status.instance_id) + ")";
   const std::string log = "Its log names session, body and likely cause";
-  const std::size_t others = std::max(static_cast<std::size_t>(std::max<std::int64_t>(status.other_services, 0)),
-                                      service.instance_ids.size() - 1);
+  const std::size_t others =
+      std::max(static_cast<std::size_t>(std::max<std::int64_t>(status.other_services, 0)),
+               service.instance_ids.size() - 1);
   if (others > 0) {
-    warnings.push_back({subject, pluralize(static_cast<std::int64_t>(others), "other service", "other services") +
-                                     " on the channel of its status",
+    warnings.push_back({subject,
+                        pluralize(static_cast<std::int64_t>(others), "other service", "other services") +
+                            " on the channel of its status",
                         "one service", "another one was not stopped: every request gets two responses",
                         "Stop it, or give each an LCM URL or channels of its own"});
   }
   if (status.scene_fingerprint != scene_fingerprint(scene)) {
-    warnings.push_back({subject, "its scene " + status.scene + " is not that of " + scene.name(), "the same scene",
-                        "another file, or one that was changed since the service loaded it",
+    warnings.push_back({subject, "its scene " + status.scene + " is not that of " + scene.name(),
+                        "the same scene", "another file, or one that was changed since the service loaded it",
                         "Give both the same file, and reload the service with SIGHUP after a change"});
   }
   const ServiceCounters& counters = status.counters;
@@ -109,8 +111,8 @@ std::vector<Warning> service_warnings(const Scene& scene, const ServiceInfo& ser
                         pluralize(counters.motions_contradicting, "velocity that contradicts",
                                   "velocities that contradict") +
                             " the motion of its body, since its start",
-                        "velocities in the world frame, in m/s and rad/s", "a simulator uses another frame or unit",
-                        log});
+                        "velocities in the world frame, in m/s and rad/s",
+                        "a simulator uses another frame or unit", log});
   }
   if (counters.quaternions_xyzw > 0) {
     warnings.push_back({subject,

@@ -13,8 +13,8 @@ namespace buoyancy::ping {
 // several services on one channel.
 std::vector<std::string> causes_from_service(const Scene& scene, const ServiceInfo& service);
 
-// What the service says about itself that a user has to know though all values agree: another scene, other services,
-// states that contradict themselves.
+// What the service says about itself that a user has to know though all values agree: another scene, other
+// services, states that contradict themselves.
 std::vector<Warning> service_warnings(const Scene& scene, const ServiceInfo& service);
 
 // Why there was no response at all.

@@ -151,9 +151,9 @@ class Daemon {
   std::int64_t reloads_failed_ = 0;
   bool last_reload_failed_ = false;
   std::int64_t send_failures_ = 0;
-  double last_status_ = 0.0;     // [s]
+  double last_status_ = 0.0;      // [s]
   bool has_new_session_ = false;  // since the last status
-  double queue_delay_ = 0.0;  // [s], longest since the last status
+  double queue_delay_ = 0.0;      // [s], longest since the last status
   InstanceMonitor instances_;
   RateLimitedLog warnings_;
   RateLimitedLog details_;                       // for --log-level debug

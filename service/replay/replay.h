@@ -29,7 +29,8 @@ struct ReplaySummary {
   std::int64_t corrupt_sections = 0;  // of the input
   // Recorded requests in a session that the replay numbers itself: a part cannot have any (replay_part.h).
   std::int64_t requests_in_pose_sessions = 0;
-  std::vector<std::string> doubts;       // contradictions between velocities and motion, as MotionMonitor finds them
+  std::vector<std::string>
+      doubts;  // contradictions between velocities and motion, as MotionMonitor finds them
   std::optional<SequenceGaps> requests;  // what the sessions of the input lack; nullopt: joined parts
   const char* stopped_by = "";           // the name of a signal; empty: the end of the input
   double seconds = 0.0;

@@ -109,7 +109,8 @@ std::string summary_text(const ReplaySummary& summary, const ReplayComparison* c
                         counters.conditions_received + counters.conditions_rejected);
     line("rejected", counters.conditions_rejected);
   }
-  if (!summary.doubts.empty()) text += fmt::format("{:<22}{:>12}\n", "velocities in doubt", summary.doubts.size());
+  if (!summary.doubts.empty())
+    text += fmt::format("{:<22}{:>12}\n", "velocities in doubt", summary.doubts.size());
   if (summary.copied > 0) text += fmt::format("{:<22}{:>12}\n", "events copied", summary.copied);
   text += fmt::format("{:<22}{:>12}\n", "corrupt sections", summary.corrupt_sections);
   text += fmt::format("{:<22}{:>12.3f}\n", "seconds", summary.seconds);

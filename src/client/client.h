@@ -49,12 +49,12 @@ class Client {
   // the next request. Precondition: ClientOptions::channel.wait_for_loads; there are none otherwise.
   const BodiesLoads& loads() const;
 
-  // A service that has another scene than the caller, if ChannelOptions::scene_fingerprint is set; nullptr: none
-  // has been seen. The service states its scene when a session begins, and once a second.
+  // A service that has another scene than the caller, if ChannelOptions::scene_fingerprint is set; nullptr:
+  // none has been seen. The service states its scene when a session begins, and once a second.
   const Warning* scene_warning() const;
 
-  // The next status that a service publishes, which is due once a second, within this time [s]; valid until the next
-  // call. Errors: none arrives.
+  // The next status that a service publishes, which is due once a second, within this time [s]; valid until
+  // the next call. Errors: none arrives.
   Expected<const ServiceStatus*> status(double timeout = 2.0);
 
   ClientStats statistics() const;

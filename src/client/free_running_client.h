@@ -36,7 +36,9 @@ class FreeRunningClient {
   // Of the response that was returned last, see ChannelOptions::wait_for_loads.
   const BodiesLoads& loads() const { return channel_.latest_loads(); }
   // See LcmRequestChannel.
-  const ServiceStatus* wait_for_status(Clock::time_point deadline) { return channel_.wait_for_status(deadline); }
+  const ServiceStatus* wait_for_status(Clock::time_point deadline) {
+    return channel_.wait_for_status(deadline);
+  }
   const Warning* scene_warning() const { return channel_.scene_warning(); }
   ClientStats statistics() const;
 

@@ -59,12 +59,12 @@ void LcmRequestChannel::Inbox::receive_loads(Bytes bytes) {
 void LcmRequestChannel::Inbox::receive_status(Bytes bytes) {
   if (decode(bytes, status)) return;
   ++statuses;
-  if (scene_warning || status.scene_fingerprint == scene_fingerprint.value_or(status.scene_fingerprint)) return;
-  scene_warning =
-      Warning{"the service (instance " + std::to_string(status.instance_id) + ")",
-              "another scene, from its file " + status.scene, "the scene of this program",
-              "another file, or a file or mesh that was changed since the service loaded it",
-              "Give both the same file, and reload the service with SIGHUP after a change"};
+  if (scene_warning || status.scene_fingerprint == scene_fingerprint.value_or(status.scene_fingerprint))
+    return;
+  scene_warning = Warning{"the service (instance " + std::to_string(status.instance_id) + ")",
+                          "another scene, from its file " + status.scene, "the scene of this program",
+                          "another file, or a file or mesh that was changed since the service loaded it",
+                          "Give both the same file, and reload the service with SIGHUP after a change"};
 }
 
 void LcmRequestChannel::Inbox::compare_with_latest() {

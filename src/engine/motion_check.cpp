@@ -12,11 +12,11 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kSlow = 0.01;               // [m/s] or [rad/s]
-constexpr double kDisagreement = 0.5;        // of the larger of two displacements
-constexpr double kAgreement = 0.2;           // likewise
-constexpr double kShortInterval = 0.0999;    // [s]
-constexpr double kSinglePrecision = 1e-6;    // relative, of positions and of quaternions: differences of them
+constexpr double kSlow = 0.01;             // [m/s] or [rad/s]
+constexpr double kDisagreement = 0.5;      // of the larger of two displacements
+constexpr double kAgreement = 0.2;         // likewise
+constexpr double kShortInterval = 0.0999;  // [s]
+constexpr double kSinglePrecision = 1e-6;  // relative, of positions and of quaternions: differences of them
 constexpr double kRadiansPerDegree = 0.017453292519943295;
 constexpr double kMicrosecondsPerSecond = 1e6;
 
@@ -52,7 +52,8 @@ std::pair<const char*, const char*> explain(const MotionFinding& finding) {
     case MotionMistake::kQuaternionXyzw:
       return {"the quaternion has the order x, y, z, w", "Send w, x, y, z"};
     case MotionMistake::kBodyFrame:
-      return {"the velocity is in the body's frame", "Turn it into the world frame with the body's quaternion"};
+      return {"the velocity is in the body's frame",
+              "Turn it into the world frame with the body's quaternion"};
     case MotionMistake::kNorthEastDown:
       return {"the velocity is in north, east, down, or points the other way, and the position is not",
               "Use the axes of the scene for both"};
@@ -61,9 +62,10 @@ std::pair<const char*, const char*> explain(const MotionFinding& finding) {
     case MotionMistake::kZero:
       return {"the simulator does not set the velocity", "Send it: loads depend on it"};
     case MotionMistake::kScale:
-      return {"another unit of the velocity, the opposite sign, or a utime that is not the simulation's time "
-              "in microseconds",
-              "Compare them with body_state_t"};
+      return {
+          "another unit of the velocity, the opposite sign, or a utime that is not the simulation's time "
+          "in microseconds",
+          "Compare them with body_state_t"};
     case MotionMistake::kUnknown:
       break;
   }
@@ -76,8 +78,8 @@ std::pair<const char*, const char*> explain(const MotionFinding& finding) {
 struct MotionCheck::Pair {
   double interval = 0.0;  // [s], > 0
   BodyState before, now;
-  Vec3 moved = Vec3::Zero();  // [m] or [rad], W
-  double resolution = 0.0;    // likewise: a smaller motion says nothing
+  Vec3 moved = Vec3::Zero();                                     // [m] or [rad], W
+  double resolution = 0.0;                                       // likewise: a smaller motion says nothing
   Vec3 stated_before = Vec3::Zero(), stated_now = Vec3::Zero();  // [m/s] or [rad/s]
 
   Vec3 stated() const { return 0.5 * interval * (stated_before + stated_now); }
@@ -99,12 +101,13 @@ Warning MotionFinding::warning() const {
   const auto [cause, hint] = explain(*this);
   const std::string subject = "session " + std::to_string(session_id) + ", body " + std::to_string(body_id);
   if (contradictions == 0) {
-    return {subject, "it starts where the scene file says, but turned", "the orientation of the scene file", cause, hint};
+    return {subject, "it starts where the scene file says, but turned", "the orientation of the scene file",
+            cause, hint};
   }
   return {subject,
           (is_angular ? "angular_velocity = " : "linear_velocity = ") + format_vector(stated, 3) + unit +
-              " where the body " + (is_angular ? "turns by " : "moves by ") + format_vector(moved, 3) + unit + ", " +
-              std::to_string(contradictions) + " requests in a row",
+              " where the body " + (is_angular ? "turns by " : "moves by ") + format_vector(moved, 3) + unit +
+              ", " + std::to_string(contradictions) + " requests in a row",
           "the velocity of its motion, in the world frame", cause, hint};
 }
 
@@ -118,8 +121,11 @@ std::optional<MotionFinding> start_in_xyzw(const RequestView& first, const Scene
     if (!index) continue;
     const DynamicsSpec& start = scene.bodies()[*index].dynamics;
     const double distance = (to_vec3(state.position) - start.position).norm();
-    if (start.start != StartKind::kPose || !(distance <= kSamePlace * (1.0 + start.position.norm()))) continue;
-    const auto turn = [&start](const Eigen::Quaterniond& q) { return 1.0 - std::abs(q.dot(start.orientation)); };
+    if (start.start != StartKind::kPose || !(distance <= kSamePlace * (1.0 + start.position.norm())))
+      continue;
+    const auto turn = [&start](const Eigen::Quaterniond& q) {
+      return 1.0 - std::abs(q.dot(start.orientation));
+    };
     if (!(std::abs(turn(read_xyzw(state.quaternion_wxyz))) <= kSameTurn)) continue;
     if (turn(read_wxyz(state.quaternion_wxyz)) <= kOtherTurn) continue;
     return MotionFinding{.session_id = first.id().session_id,
@@ -221,8 +227,9 @@ std::optional<MotionFinding> MotionCheck::compare_body(std::size_t place, bool i
 
 void MotionCheck::follow_next(std::size_t bodies) {
   if (++pairs_ < kPairsOfGroup || bodies <= kBodies) return;
-  const bool is_suspicious = std::ranges::any_of(
-      streaks_, [](const auto& streaks) { return streaks[0].contradictions + streaks[1].contradictions > 0; });
+  const bool is_suspicious = std::ranges::any_of(streaks_, [](const auto& streaks) {
+    return streaks[0].contradictions + streaks[1].contradictions > 0;
+  });
   if (is_suspicious) return;
   first_ = first_ + kBodies < bodies ? first_ + kBodies : 0;
   pairs_ = 0;

@@ -4,9 +4,9 @@
 // Two states of a body contradict each other if what the body moves between them, and what the two stated
 // velocities or their mean would move it, differ by more than half of the larger one. A single contradiction
 // means little: a body is placed elsewhere, or hits another. A finding needs kExplained contradictions in a
-// row that one mistake explains, each within a fifth, or kUnexplained ones. Only a body frame, degrees and the
-// order of a quaternion can be told from a vibration where requests are 0.1 s apart or more. Motion that is
-// too slow to tell is passed over.
+// row that one mistake explains, each within a fifth, or kUnexplained ones. Only a body frame, degrees and
+// the order of a quaternion can be told from a vibration where requests are 0.1 s apart or more. Motion that
+// is too slow to tell is passed over.
 #pragma once
 
 #include <array>
@@ -44,8 +44,8 @@ struct MotionFinding {
   Warning warning() const;
 };
 
-// A body of the first request of a session that is where the scene file has it start, and whose quaternion would
-// be the one of the file if its order were x, y, z, w. O(bodies).
+// A body of the first request of a session that is where the scene file has it start, and whose quaternion
+// would be the one of the file if its order were x, y, z, w. O(bodies).
 std::optional<MotionFinding> start_in_xyzw(const RequestView& first, const Scene& scene);
 
 // The requests of one session. It follows a few bodies at a time, and others once those agree, so that its
@@ -55,10 +55,11 @@ class MotionCheck {
   static constexpr int kExplained = 10;
   static constexpr int kUnexplained = 30;
 
-  // Checks the session's first request with start_in_xyzw(), and compares each further one with the one before it;
-  // nullptr: that is not known. A body is compared if it has the same place in both. Zeros in all velocities of a
-  // body count where they are used: with a lead_time, and in scenes with drag or added mass. Returns at most one
-  // finding about linear velocities and one about angular ones, once each. O(bodies) at first, then O(1).
+  // Checks the session's first request with start_in_xyzw(), and compares each further one with the one
+  // before it; nullptr: that is not known. A body is compared if it has the same place in both. Zeros in all
+  // velocities of a body count where they are used: with a lead_time, and in scenes with drag or added mass.
+  // Returns at most one finding about linear velocities and one about angular ones, once each. O(bodies) at
+  // first, then O(1).
   std::optional<MotionFinding> check(const RequestView* before, const RequestView& now, const Scene& scene);
 
  private:
@@ -74,13 +75,14 @@ class MotionCheck {
   // How a body moved, and what it stated.
   struct Pair;
 
-  std::optional<MotionFinding> compare(const RequestView& before, const RequestView& now, bool uses_velocities);
+  std::optional<MotionFinding> compare(const RequestView& before, const RequestView& now,
+                                       bool uses_velocities);
   std::optional<MotionFinding> compare_body(std::size_t place, bool is_angular, const Pair& pair);
   void follow_next(std::size_t bodies);
 
   bool has_begun_ = false;
-  std::size_t first_ = 0;  // place of the first body that is followed
-  int pairs_ = 0;          // of requests, since it is
+  std::size_t first_ = 0;                                 // place of the first body that is followed
+  int pairs_ = 0;                                         // of requests, since it is
   std::array<std::array<Streak, 2>, kBodies> streaks_{};  // of linear and angular velocity
   std::array<bool, 2> is_found_{};                        // likewise
 };

@@ -114,13 +114,20 @@ void visit_strings(Status& status, Visitor&& visitor) {
 }
 
 // The names of ServiceCounters::bodies in service_status_t, by BodyStatus.
-inline constexpr std::array<const char*, kBodyStatusCount> kBodyCounterNames{
-    "bodies_ok",           "bodies_unknown",       "bodies_non_finite_pose", "bodies_bad_quaternion",
-    "bodies_non_finite_twist", "bodies_bad_lead_time", "bodies_open_edge_wet",   "bodies_out_of_range",
-    "bodies_no_sea",       "bodies_bad_condition", "bodies_not_certified"};
+inline constexpr std::array<const char*, kBodyStatusCount> kBodyCounterNames{"bodies_ok",
+                                                                             "bodies_unknown",
+                                                                             "bodies_non_finite_pose",
+                                                                             "bodies_bad_quaternion",
+                                                                             "bodies_non_finite_twist",
+                                                                             "bodies_bad_lead_time",
+                                                                             "bodies_open_edge_wet",
+                                                                             "bodies_out_of_range",
+                                                                             "bodies_no_sea",
+                                                                             "bodies_bad_condition",
+                                                                             "bodies_not_certified"};
 
-// Visits each counter with its name in service_status_t; with several ServiceCounters, the same counter of all of
-// them in one call.
+// Visits each counter with its name in service_status_t; with several ServiceCounters, the same counter of
+// all of them in one call.
 template <typename Visitor, MaybeConst<ServiceCounters>... C>
 void visit_counters(Visitor&& visitor, C&... c) {
   visitor("requests", c.requests...);

@@ -62,7 +62,7 @@ struct ClientObject {
   SignalCheck signals;
   bool has_loads = false;
   bool is_busy = false;
-  bool has_warned = false;  // of another scene
+  bool has_warned = false;        // of another scene
   std::vector<BodyState> states;  // reused
 };
 
@@ -380,10 +380,12 @@ void define_client(py::module_& module) {
       "reserve", &reserve, py::arg("bodies"),
       "reserve($self, bodies)\n--\n\nPrepare for requests about this many bodies. Returns a warning if the "
       "kernel's buffer is too small for\ntheir responses, else None.");
-  type.def("status", &status, py::arg("timeout") = 2.0,
-           "status($self, timeout=2.0)\n--\n\nThe next status of the service, which comes once a second: a dict "
-           "with the fields of service_status_t.\nWaits without the interpreter's lock. Raises ServiceError if none "
-           "arrives within timeout (s).");
+  type.def(
+      "status", &status, py::arg("timeout") = 2.0,
+      "status($self, timeout=2.0)\n--\n\nThe next status of the service, which comes once a second: a dict "
+      "with the fields of service_status_t.\nWaits without the interpreter's lock. Raises ServiceError if "
+      "none "
+      "arrives within timeout (s).");
   type.def_property_readonly(
       "statistics", &statistics,
       "dict: requests, retries, unanswered, late, max_lag, malformed, and round_trip_p50, _p99, _max in s.");

@@ -19,6 +19,7 @@
 #include "python/module.h"
 #include "python/result_array.h"
 #include "recording/event_log.h"
+#include "recording/sequence_gaps.h"
 #include "recording/state_csv.h"
 
 namespace buoyancy::python {
@@ -51,6 +52,7 @@ void append(const std::array<double, kCount>& values, std::vector<double>& colum
 struct Log {
   Columns states, wrenches;
   std::vector<std::string> corrupt_sections;
+  SequenceGaps requests, responses;
   std::int64_t rejected = 0;  // messages on the channels that are none of the expected type
 };
 
@@ -68,6 +70,7 @@ void add_request(std::int64_t timestamp, Bytes bytes, Log& log) {
     ++log.rejected;
     return;
   }
+  log.requests.add(request->id().session_id, request->id().seq);
   for (std::size_t i = 0; i < request->size(); ++i) {
     const BodyState state = request->body(i);
     log.states.add(timestamp, request->id(), state.body_id);
@@ -116,6 +119,7 @@ void read_event_log(const std::string& path, const std::string& states_channel,
       ++log.rejected;
       return;
     }
+    log.responses.add(response.id.session_id, response.id.seq);
     for (const BodyWrench& wrench : response.bodies)
       add_wrench(event.timestamp, response.id, wrench, log.wrenches);
   });
@@ -220,6 +224,16 @@ void add_common_columns(py::class_<View>& type, Columns Log::*table) {
   add_column(type, "body_id", table, &Columns::body_id, 1, "(N,) int32.");
 }
 
+py::dict to_dict(const SequenceGaps& gaps) {
+  py::dict sessions;
+  for (const SequenceGaps::Session& session : gaps.incomplete_sessions()) {
+    py::list ranges;
+    for (const SequenceGaps::Gap& gap : session.gaps) ranges.append(py::make_tuple(gap.first, gap.last));
+    sessions[py::int_(session.session_id)] = ranges;
+  }
+  return sessions;
+}
+
 constexpr const char* kReadLogDoc =
     "read_log(path, *, states_channel='BUOYANCY_STATES', wrenches_channel='BUOYANCY_WRENCHES')\n--\n\n"
     "The poses and wrenches that a file holds: a Log.\n\n"
@@ -273,6 +287,13 @@ void define_log(py::module_& module) {
       "corrupt_sections",
       [](py::handle self) { return py::tuple(py::cast(instance_of<Log>(self).corrupt_sections)); },
       "tuple of str: what could not be read, and where.");
+  log.def_property_readonly(
+      "missing_requests", [](py::handle self) { return to_dict(instance_of<Log>(self).requests); },
+      "dict: for each session that lacks requests between its first and last one, a list of (first, last) "
+      "seq.");
+  log.def_property_readonly(
+      "missing_responses", [](py::handle self) { return to_dict(instance_of<Log>(self).responses); },
+      "dict: likewise.");
   log.def_property_readonly(
       "rejected", [](py::handle self) { return instance_of<Log>(self).rejected; },
       "int: messages on the two channels that are of another type, or damaged.");

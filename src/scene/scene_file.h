@@ -164,7 +164,7 @@ struct SceneDescription {
   bool waves_received = false;  // waves = "received": the sea comes in messages, `sea` has the current alone
   // Of what the text states besides [body.client], the names of files and comments; 0: not from a text.
   std::uint64_t text_fingerprint = 0;
-  std::string water_location;   // of [water]: "scene.toml:3", for errors; empty without it
+  std::string water_location;  // of [water]: "scene.toml:3", for errors; empty without it
   ImportLimits limits;
   std::vector<BodyDescription> bodies;  // at least one; ids unique
 };

@@ -79,7 +79,8 @@ std::int64_t scene_fingerprint(const Scene& scene) {
     places.emplace(prepared.get(), places.size());
     const HydrostaticMesh& mesh = prepared->mesh;
     for (const double coordinate : mesh.center_B) hash.add(coordinate);
-    for (const std::vector<double>* axis : {&mesh.surface.x, &mesh.surface.y, &mesh.surface.z}) hash.add(*axis);
+    for (const std::vector<double>* axis : {&mesh.surface.x, &mesh.surface.y, &mesh.surface.z})
+      hash.add(*axis);
     hash.add(mesh.surface.triangles);
     hash.add(mesh.boundary_vertices);
   }

@@ -9,8 +9,8 @@ namespace buoyancy {
 
 // Equal for scenes whose bodies get the same wrenches: of the meshes as prepared, of the components of the
 // waves, and of everything that the scene file states besides [body.client], the names of mesh files and
-// comments. The order of keys, and a whole number in the place of a real one, make no difference; a default that
-// is written down does. It detects mistakes, not forgery. Complexity: O(scene), some GB/s.
+// comments. The order of keys, and a whole number in the place of a real one, make no difference; a default
+// that is written down does. It detects mistakes, not forgery. Complexity: O(scene), some GB/s.
 std::int64_t scene_fingerprint(const Scene& scene);
 
 }  // namespace buoyancy

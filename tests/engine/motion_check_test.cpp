@@ -56,14 +56,14 @@ using Change = std::function<void(BodyState&, int step)>;
 
 // The findings about a motion of which every state is changed.
 std::vector<MotionFinding> findings(const Motion& motion, int steps, const Change& change,
-                                    bool uses_velocities = false, double interval = kStep,
-                                    int bodies = 1) {
+                                    bool uses_velocities = false, double interval = kStep, int bodies = 1) {
   MotionCheck check;
   std::vector<MotionFinding> found;
   std::array<ByteVector, 2> bytes;
   for (int step = 0; step <= steps; ++step) {
     WrenchRequest request;
-    request.id = {.utime = 1'000'000'000'000 + std::llround(step * interval * 1e6), .session_id = 5, .seq = step};
+    request.id = {
+        .utime = 1'000'000'000'000 + std::llround(step * interval * 1e6), .session_id = 5, .seq = step};
     if (uses_velocities) request.lead_time = 1.0;
     for (int body = 0; body < bodies; ++body) {
       request.bodies.push_back(motion.at(step * interval));
@@ -168,7 +168,10 @@ TEST(MotionCheck, AcceptsTheMotionAsItIs) {
   RandomPoses random(5);
   for (int i = 0; i < 100; ++i) {
     const Motion motion(random);
-    EXPECT_TRUE(findings(motion, 200, [](BodyState&, int) {}, true).empty()) << i;
+    EXPECT_TRUE(findings(
+                    motion, 200, [](BodyState&, int) {}, true)
+                    .empty())
+        << i;
     // Every tenth state is somewhere else, and every seventh at another velocity.
     const Change jumps = [](BodyState& state, int step) {
       if (step % 10 < 2) state.position[0] += 10.0 * step;
@@ -182,7 +185,8 @@ TEST(MotionCheck, AcceptsTheMotionAsItIs) {
       state.position = to_array(motion.start + motion.swing * std::sin(w * t));
       state.linear_velocity = to_array(motion.swing * w * std::cos(w * t));
     };
-    for (const MotionFinding& finding : findings(motion, 200, other, true, 0.3)) ADD_FAILURE() << finding.warning().message();
+    for (const MotionFinding& finding : findings(motion, 200, other, true, 0.3))
+      ADD_FAILURE() << finding.warning().message();
   }
 }
 
@@ -265,8 +269,10 @@ TEST(MotionCheck, SaysWhatContradictsWhatAndWhy) {
                               .stated = {1.0, 0.0, 0.0},
                               .contradictions = 10};
   EXPECT_EQ(finding.warning().message(),
-            "session 5, body 7: angular_velocity = 1, 0, 0 rad/s where the body turns by 0, 0, -1 rad/s, 10 requests in "
-            "a row; expected the velocity of its motion, in the world frame. Likely cause: the quaternion has the order "
+            "session 5, body 7: angular_velocity = 1, 0, 0 rad/s where the body turns by 0, 0, -1 rad/s, 10 "
+            "requests in "
+            "a row; expected the velocity of its motion, in the world frame. Likely cause: the quaternion "
+            "has the order "
             "x, y, z, w. Send w, x, y, z.");
 }
 

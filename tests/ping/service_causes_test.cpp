@@ -47,7 +47,10 @@ TEST(ServiceWarnings, NameEachThingThatAUserHasToKnow) {
   const Scene scene = SceneText{}.scene();
   using Change = std::pair<const char*, std::function<void(ServiceInfo&)>>;
   for (const auto& [text, change] : std::initializer_list<Change>{
-           {"1 other service on the channel of its status", [](ServiceInfo& now) { now.instance_ids = {1, 2}; }},
+           {"1 other service on the channel of its status",
+            [](ServiceInfo& now) {
+              now.instance_ids = {1, 2};
+            }},
            {"2 other services", [](ServiceInfo& now) { now.status->other_services = 2; }},
            {"its scene  is not that of", [](ServiceInfo& now) { ++now.status->scene_fingerprint; }},
            {"2 velocities that contradict the motion",

@@ -53,6 +53,23 @@ class ReadsRecordings(TestCase):
             self.assertEqual(wrenches.utime.tolist(), states.utime.tolist())
         self.assertEqual(len(self.read("out.lcmlog", wrenches_channel="OTHER").wrenches), 0)
 
+    def test_missing_messages(self):
+        # An event has magic, number, time, and the lengths of channel and message before these.
+        bytes_left = (self.folder / "out.lcmlog").read_bytes()
+        events = []
+        while bytes_left:
+            size = 28 + sum(struct.unpack(">II", bytes_left[20:28]))
+            events.append(bytes_left[:size])
+            bytes_left = bytes_left[size:]
+        path = self.folder / "holes.lcmlog"
+        path.write_bytes(b"".join(events[:3] + events[5:40] + events[41:]))
+        log = buoyancy.read_log(path)
+        session = int(log.wrenches.session_id[0])
+        first = int(log.wrenches.seq[0])
+        self.assertEqual(log.missing_responses, {session: [(first + 3, first + 4), (first + 40, first + 40)]})
+        self.assertEqual(log.missing_requests, {})
+        self.assertEqual(self.read("out.lcmlog").missing_responses, {})
+
     def test_poses_and_wrenches_of_a_log(self):
         reference = Reference()
         for water in WATERS:

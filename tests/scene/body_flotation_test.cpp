@@ -96,7 +96,8 @@ TEST(SceneFlotation, WarnsOfWhatTheClientRefuses) {
     ASSERT_FALSE(start) << text;
     EXPECT_THAT(warnings_of(scene), ElementsAre(HasSubstr(start.error().actual)));
     const std::vector<FlotationOfBody> flotation = scene_flotation(scene);
-    EXPECT_THAT(scene_report_text(scene, {.flotation = &flotation}), Not(HasSubstr("at equilibrium"))) << text;
+    EXPECT_THAT(scene_report_text(scene, {.flotation = &flotation}), Not(HasSubstr("at equilibrium")))
+        << text;
   }
   EXPECT_THAT(warnings_of(scene_of(open + "mass = 1\n")),
               ElementsAre(HasSubstr("without center_of_mass, inertia;")));

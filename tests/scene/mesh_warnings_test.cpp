@@ -33,7 +33,8 @@ TEST(MeshWarnings, NoteAMeshInAnotherUnit) {
 }
 
 TEST(MeshWarnings, SayNothingOfWhatFloatsOrSinks) {
-  for (const std::string mass : {"mass = 20", "mass = 700", "mass = 20000", "density = 20", "density = 20000", ""}) {
+  for (const std::string mass :
+       {"mass = 20", "mass = 700", "mass = 20000", "density = 20", "density = 20000", ""}) {
     EXPECT_TRUE(warnings_of("[1, 1, 1]", mass).empty()) << mass;
   }
   EXPECT_EQ(warnings_of("[1, 1, 1]", "mass = 19.99").size(), 1U);

@@ -35,24 +35,25 @@ std::string replaced(std::string text, const std::string& old, const std::string
 
 TEST(SceneFingerprint, IsThatOfWhatTheWrenchesDependOn) {
   const std::int64_t original = fingerprint(kTwoBodies);
-  for (const auto& [old, by] : {std::pair("density = 1000", "density = 1001"), std::pair("id = 2", "id = 3"),
-                                std::pair("[1, 2, 3]", "[1, 3, 2]"), std::pair("[1, 2, 3]", "[1, 2, 3.0000001]"),
-                                std::pair("radius = 0.5", "radius = 0.6"),
-                                std::pair("id = 2", "id = 2\nmethod = \"exact\""),
-                                std::pair("id = 2", "id = 2\nreference_point = [0, 0, 1]"),
-                                std::pair("density = 1000", "density = 1000\nlevel = 0.1"),
-                                std::pair("density = 1000", "density = 1000\n[water.waves]\ntype = \"regular\"\n"
-                                                            "height = 0.1\nperiod = 4\n")}) {
+  for (const auto& [old, by] :
+       {std::pair("density = 1000", "density = 1001"), std::pair("id = 2", "id = 3"),
+        std::pair("[1, 2, 3]", "[1, 3, 2]"), std::pair("[1, 2, 3]", "[1, 2, 3.0000001]"),
+        std::pair("radius = 0.5", "radius = 0.6"), std::pair("id = 2", "id = 2\nmethod = \"exact\""),
+        std::pair("id = 2", "id = 2\nreference_point = [0, 0, 1]"),
+        std::pair("density = 1000", "density = 1000\nlevel = 0.1"),
+        std::pair("density = 1000",
+                  "density = 1000\n[water.waves]\ntype = \"regular\"\n"
+                  "height = 0.1\nperiod = 4\n")}) {
     EXPECT_NE(fingerprint(replaced(kTwoBodies, old, by)), original) << by;
   }
 }
 
 TEST(SceneFingerprint, IgnoresWhatTheyDoNotDependOn) {
   const std::int64_t original = fingerprint(kTwoBodies);
-  for (const auto& [old, by] :
-       {std::pair("mass = 100", "mass = 200"), std::pair("density = 1000", "density = 1000.0 # of fresh water"),
-        std::pair("id = 1\nshape = { type = \"box\", size = [1, 2, 3] }",
-                  "shape = { size = [1, 2, 3.0], type = \"box\" }\n\nid = 1")}) {
+  for (const auto& [old, by] : {std::pair("mass = 100", "mass = 200"),
+                                std::pair("density = 1000", "density = 1000.0 # of fresh water"),
+                                std::pair("id = 1\nshape = { type = \"box\", size = [1, 2, 3] }",
+                                          "shape = { size = [1, 2, 3.0], type = \"box\" }\n\nid = 1")}) {
     EXPECT_EQ(fingerprint(replaced(kTwoBodies, old, by)), original) << by;
   }
 }

@@ -1,4 +1,5 @@
-// Mistakes of simulators, made on purpose: the service's log, its status, buoyancy-ping and a client notice them.
+// Mistakes of simulators, made on purpose: the service's log, its status, buoyancy-ping and a client notice
+// them.
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -40,17 +41,22 @@ struct Mistake {
 
 const std::array kMistakes{
     Mistake{"velocity_in_body_frame",
-            [](BodyState& state) { state.linear_velocity = {2.0, 0.0, 0.0}; },
+            [](BodyState& state) {
+              state.linear_velocity = {2.0, 0.0, 0.0};
+            },
             "the velocity is in the body's frame"},
-    Mistake{"degrees",
-            [](BodyState& state) { state.angular_velocity[0] *= 180.0 / M_PI; }, "degrees per second"},
+    Mistake{"degrees", [](BodyState& state) { state.angular_velocity[0] *= 180.0 / M_PI; },
+            "degrees per second"},
     Mistake{"xyzw",
             [](BodyState& state) {
               const auto [w, x, y, z] = state.quaternion_wxyz;
               state.quaternion_wxyz = {x, y, z, w};
             },
             "the order x, y, z, w"},
-    Mistake{"milliseconds", [](BodyState& state) { for (double& v : state.linear_velocity) v *= 1e-3; },
+    Mistake{"milliseconds",
+            [](BodyState& state) {
+              for (double& v : state.linear_velocity) v *= 1e-3;
+            },
             "another unit of the velocity"}};
 
 void send_steps(int steps, const std::function<void(BodyState&)>& change) {
@@ -77,8 +83,8 @@ TEST_P(BeginnersMistake, IsNamedByLogStatusAndPing) {
   RawLcmSocket bus;
   send_steps(60, GetParam().make);
   ASSERT_TRUE(service.child().wait_for_text(GetParam().cause, kWaitTimeout)) << service.log();
-  const auto status = wait_for_status(
-      bus, [](const ServiceStatus& now) { return now.counters.motions_contradicting > 0; });
+  const auto status =
+      wait_for_status(bus, [](const ServiceStatus& now) { return now.counters.motions_contradicting > 0; });
   ASSERT_TRUE(status);
   EXPECT_EQ(status->counters.motions_contradicting, 1);
   const FinishedProcess pinged = ping(service);
@@ -116,7 +122,8 @@ TEST(BeginnersMistakes, IncludeTheStartPoseInAnotherOrder) {
   ASSERT_TRUE(client->request(0, states));
   EXPECT_TRUE(service.child().wait_for_text("starts where the scene file says, but turned", kWaitTimeout))
       << service.log();
-  EXPECT_THAT(ping(service).standard_error, HasSubstr("1 session with quaternions that look like x, y, z, w"));
+  EXPECT_THAT(ping(service).standard_error,
+              HasSubstr("1 session with quaternions that look like x, y, z, w"));
 }
 
 TEST(BeginnersMistakes, IncludeAServiceWithAnotherScene) {

@@ -190,7 +190,7 @@ TEST_F(LivePage, RespondsToKeys) {
 }
 
 TEST_F(LivePage, FitsPhoneAndDesktopScreens) {
-  for (const Screen& screen : {kPhone, kDesktop}) {
+  for (const Screen& screen : {kPhone, Screen{600, 800, false}, Screen{799, 800, false}, kDesktop}) {
     browser().resize(screen);
     browser().wait_until("window.buoyancyView && buoyancyView.renders > 3");
     browser().wait_until("document.querySelectorAll('#counters table').length === 4");

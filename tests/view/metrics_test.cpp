@@ -25,8 +25,8 @@ TEST(Metrics, HaveOneTypeAndOneValueEach) {
   const std::string text = metrics_text(&status);
   for (const char* line :
        {"buoyancy_up 1\n", "buoyancy_requests_total 1234567890123\n", "buoyancy_bodies_unknown_total 7\n",
-        "# TYPE buoyancy_retained_bytes gauge\nbuoyancy_retained_bytes 99\n", "buoyancy_latency_p99_seconds 0.1\n",
-        "# TYPE buoyancy_faults_dropped_total counter\n",
+        "# TYPE buoyancy_retained_bytes gauge\nbuoyancy_retained_bytes 99\n",
+        "buoyancy_latency_p99_seconds 0.1\n", "# TYPE buoyancy_faults_dropped_total counter\n",
         R"(buoyancy_info{version="2.0.0",scene="a\\b \"c\"\nd.toml",injected_faults="",instance_id="-5",)"
         "scene_fingerprint=\"-9223372036854775808\"} 1\n"}) {
     EXPECT_TRUE(contains(text, line)) << text;

@@ -429,7 +429,8 @@ TEST_F(LiveData, IsTrackedUntilTheClockGoesBack) {
   send({snapshot(10.0, 0.5), snapshot(10.05, 9.0), snapshot(10.2, 0.25), snapshot(40.0, -1.5),
         snapshot(70.1, 0.75)});
   EXPECT_EQ(label(2),
-            "Heave of the body in m over time from -59.9 to 0 s: height of the body's origin above the still water level from -1.5 to 0.75, "
+            "Heave of the body in m over time from -59.9 to 0 s: height of the body's origin above the still "
+            "water level from -1.5 to 0.75, "
             "at the end 0.75")
       << "a minute";
   EXPECT_EQ(label(3),
@@ -439,7 +440,8 @@ TEST_F(LiveData, IsTrackedUntilTheClockGoesBack) {
   failed["bodies"][0]["status"] = 6;
   send({failed});
   EXPECT_EQ(label(2),
-            "Heave of the body in m over time from -31 to 0 s: height of the body's origin above the still water level from -1.5 to 2, at the "
+            "Heave of the body in m over time from -31 to 0 s: height of the body's origin above the still "
+            "water level from -1.5 to 2, at the "
             "end 2");
   EXPECT_EQ(label(3),
             "Buoyant force on the body in N over time from -31 to 0 s: upwards from -1,500 to 750, at the "
@@ -449,7 +451,8 @@ TEST_F(LiveData, IsTrackedUntilTheClockGoesBack) {
   for (int start = 0; start < 2; ++start) {
     send({snapshot(3.0, 0.5), snapshot(5.0, 0.125)});
     EXPECT_EQ(label(2),
-              "Heave of the body in m over time from -2 to 0 s: height of the body's origin above the still water level from 0.125 to 0.5, at "
+              "Heave of the body in m over time from -2 to 0 s: height of the body's origin above the still "
+              "water level from 0.125 to 0.5, at "
               "the end 0.125");
   }
   // A body that appears later has no points before.
@@ -459,7 +462,8 @@ TEST_F(LiveData, IsTrackedUntilTheClockGoesBack) {
   send({more});
   browser().run("buoyancyView.select(9)");
   EXPECT_EQ(label(2),
-            "Heave of the body in m over time from -3 to 0 s: height of the body's origin above the still water level from 0.25 to 0.25, at "
+            "Heave of the body in m over time from -3 to 0 s: height of the body's origin above the still "
+            "water level from 0.25 to 0.25, at "
             "the end 0.25");
 }
 

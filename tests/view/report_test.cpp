@@ -204,6 +204,10 @@ TEST_F(ReportPage, FitsPhoneScreen) {
   open();
   EXPECT_LE(browser().run("return document.documentElement.scrollWidth").get<int>(), kPhone.width);
   EXPECT_GT(browser().region_of("#canvas").width, 300);
+  EXPECT_EQ(browser().run("return [...document.querySelectorAll('caption span')]"
+                          ".filter((caption) => caption.getBoundingClientRect().right > innerWidth).length"),
+            0)
+      << "captions that are cut";
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 

@@ -191,6 +191,24 @@ TEST_F(RunFileTest, CountsRetriesOnceAndComputesMissingResponses) {
   EXPECT_NEAR(run.bodies[0].rows[1][kRoundTrip], 1.1e-3, 1e-12) << "from the first request";
 }
 
+// A body that falls at 1 m/s and states millimetres per second; two requests are missing.
+TEST_F(RunFileTest, NotesWhatTheLogLacksAndContradicts) {
+  for (std::int64_t seq = 0; seq < 20; ++seq) {
+    if (seq == 7 || seq == 8) continue;
+    WrenchRequest request = request_at(seq, -1e-3 * static_cast<double>(seq));
+    request.bodies[0].linear_velocity = {0.0, 0.0, -1000.0};
+    log_request(1'000 * seq, request);
+    log_response(1'000 * seq + 500, request);
+  }
+  const RecordedRun run = read_log().value();
+  ASSERT_EQ(run.notices.size(), 2U);
+  EXPECT_EQ(run.notices[0], "session 1: 2 requests missing, seq 7 to 8");
+  EXPECT_EQ(run.notices[1].rfind(
+                "session 1, body 1: linear_velocity = 0, 0, -1e+03 m/s where the body moves by", 0),
+            0U)
+      << run.notices[1];
+}
+
 class RunFileInWavesTest : public RunFileTest {
  protected:
   static std::string box_in(const std::string& waves) {

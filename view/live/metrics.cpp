@@ -54,7 +54,8 @@ std::string metrics_text(const ServiceStatus* status) {
     } else {
       const bool is_gauge = std::ranges::find(kGauges, name) != kGauges.end();
       if (!is_gauge) metric += "_total";
-      add_metric(text, metric, is_gauge ? "gauge" : "counter", std::to_string(static_cast<std::int64_t>(field)));
+      add_metric(text, metric, is_gauge ? "gauge" : "counter",
+                 std::to_string(static_cast<std::int64_t>(field)));
     }
   });
   return text;

@@ -1,4 +1,5 @@
-// The latest status of a service in the text format of Prometheus (version 0.0.4), for monitoring without a screen.
+// The latest status of a service in the text format of Prometheus (version 0.0.4), for monitoring without a
+// screen.
 #pragma once
 
 #include <mutex>
@@ -9,9 +10,9 @@
 
 namespace buoyancy::view {
 
-// Each field of service_status_t under its name with "buoyancy_" in front: counters with "_total" behind, times with
-// "_seconds". buoyancy_up is 1, and buoyancy_info has version, scene, instance_id and scene_fingerprint as labels.
-// status: nullptr: none has arrived recently; then buoyancy_up is 0 and alone.
+// Each field of service_status_t under its name with "buoyancy_" in front: counters with "_total" behind,
+// times with "_seconds". buoyancy_up is 1, and buoyancy_info has version, scene, instance_id and
+// scene_fingerprint as labels. status: nullptr: none has arrived recently; then buoyancy_up is 0 and alone.
 std::string metrics_text(const ServiceStatus* status);
 
 // The text that is served: one thread sets it, others read it.

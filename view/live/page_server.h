@@ -43,8 +43,8 @@ class PageServer {
  public:
   // Listens and serves on threads of its own, which inherit the signal mask. port: 0 selects a free one.
   // "/events" streams from the broadcaster, which must outlive the server. host_names: further names, without
-  // ports. metrics: served at "/metrics", and must outlive the server; nullptr: there is no such path. Errors: the
-  // port is not available.
+  // ports. metrics: served at "/metrics", and must outlive the server; nullptr: there is no such path.
+  // Errors: the port is not available.
   static Expected<std::unique_ptr<PageServer>> start(const std::string& address, int port,
                                                      std::vector<StaticResource> resources,
                                                      SnapshotBroadcaster& broadcaster,

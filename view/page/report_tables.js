@@ -36,6 +36,7 @@ function report_notices(data, bodies) {
   }
   if (data.sessions > 1) notices.push(`The run contains ${plural(data.sessions, 'session', 'sessions')}; after a restart of the clock, time continues after the previous rows.`);
   if (data.unknown_bodies > 0) notices.push(`${plural(data.unknown_bodies, 'row', 'rows')} about bodies that are not in the scene.`);
+  notices.push(...data.notices);
   for (const warning of data.warnings) notices.push(`Input error: ${warning}.`);
   if (data.suppressed_warnings > 0) notices.push(`${plural(data.suppressed_warnings, 'more input error', 'more input errors')} not shown.`);
   for (const mesh of data.model.meshes) {

@@ -174,6 +174,7 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
             {"sessions", run.sessions},
             {"computed", run.computed},
             {"unknown_bodies", run.unknown_bodies},
+            {"notices", run.notices},
             {"warnings", run.warnings},
             {"suppressed_warnings", run.suppressed_warnings},
             {"status", run.status ? status_json(*run.status) : Json(nullptr)},

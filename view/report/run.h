@@ -140,6 +140,7 @@ struct RecordedRun {
   std::int64_t unknown_bodies = 0;  // rows about bodies that the scene does not have
   std::int64_t sessions = 0;        // of requests
   std::int64_t computed = 0;  // rows of shown bodies without a recorded response, computed from the scene
+  std::vector<std::string> notices;   // about what the run lacks or contradicts
   std::vector<std::string> warnings;  // the first ones about input that could not be read
   std::int64_t suppressed_warnings = 0;
   std::vector<std::shared_ptr<const SeaPeriod>> seas;  // of the shown rows: the scene's, or those received

@@ -61,6 +61,8 @@ class RunBuilder {
   // A body_condition_t of a scene with compartments or tanks, from whose utime on it holds.
   void receive_condition(std::int64_t timestamp, Bytes message);
   void add_warning(std::string warning);
+  void add_notice(std::string notice) { run_.notices.push_back(std::move(notice)); }
+  const Scene& scene() const { return scene_; }
   void set_status(ServiceStatus status) { run_.status = std::move(status); }
 
   // Returns the run; the builder must not be used afterwards.

@@ -11,8 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "engine/motion_check.h"
 #include "messages/conversions.h"
 #include "recording/event_log.h"
+#include "recording/sequence_gaps.h"
 #include "view/common/pose_tracker.h"
 
 namespace buoyancy::view {
@@ -34,6 +36,8 @@ class ResponseMatcher {
     WrenchRequest request;
     if (const auto error = decode(bytes, request)) return warn_skipped("request", *error);
     const std::int64_t session_id = request.id.session_id;
+    gaps_.add(session_id, request.id.seq);
+    motion_.add(bytes, builder_.scene());
     add_pending({timestamp, true, std::move(request), {}}, session_id);
   }
 
@@ -77,9 +81,15 @@ class ResponseMatcher {
     complete(timestamp, find_pose(poses_.channels().channels[index].body_id, message->utime), *message);
   }
 
-  // Adds the requests that are still pending without a response.
-  void flush() {
+  // Adds the requests that are still pending without a response, and what the log lacks or contradicts.
+  void finish() {
     while (!pending_.empty()) drop_oldest();
+    constexpr std::size_t kMaxNotices = 8;
+    std::vector<std::string> notices = gap_lines(gaps_, "requests");
+    for (const MotionFinding& finding : motion_.findings()) notices.push_back(finding.warning().message());
+    const std::size_t shown = std::min(notices.size(), kMaxNotices);
+    for (std::size_t i = 0; i < shown; ++i) builder_.add_notice(std::move(notices[i]));
+    if (notices.size() > shown) builder_.add_notice(std::to_string(notices.size() - shown) + " more notices");
   }
   std::int64_t rows() const { return rows_; }
 
@@ -172,6 +182,8 @@ class ResponseMatcher {
   AwaitingLoads awaiting_loads_;  // rows of the latest responses, the latest first
   WrenchResponse response_;       // decode buffers, reused
   BodiesLoads loads_;
+  SequenceGaps gaps_;
+  MotionMonitor motion_;
   std::int64_t rows_ = 0;
 };
 
@@ -222,7 +234,7 @@ Expected<void> read_run_log(const std::filesystem::path& path, const RunFileOpti
     }
   }
   if (log->file().read_error()) return make_error(*log->file().read_error());
-  matcher.flush();
+  matcher.finish();
   return {};
 }
 
