@@ -65,9 +65,9 @@ std::string slab(const std::string& table) {
 }
 
 TEST(CoefficientWarnings, WarnsAboutCentersFarFromTheMesh) {
-  for (const auto& [section, key] : {std::pair{"[body.drag]", "linear"}, {"[body.added_mass]", "matrix"}}) {
+  for (const auto& table : {std::pair{"[body.drag]", "linear"}, {"[body.added_mass]", "matrix"}}) {
     const auto at = [&](const Vec3& center) {
-      return slab(std::string(section) + "\n" + key + " = [1, 1, 1, 1, 1, 1]\ncenter = [" +
+      return slab(std::string(table.first) + "\n" + table.second + " = [1, 1, 1, 1, 1, 1]\ncenter = [" +
                   format_vector(center) + "]");
     };
     // The faces are at 0.5, 1 and 1.5 m, and the diagonal is 3.742 m.
@@ -77,7 +77,7 @@ TEST(CoefficientWarnings, WarnsAboutCentersFarFromTheMesh) {
         center[axis] = side * (0.5 * (1 + axis) + 3.7);
         EXPECT_TRUE(warnings_of(at(center)).empty()) << center.transpose();
         center[axis] = side * (0.5 * (1 + axis) + 3.8);
-        expect_one_warning(at(center), "pool.toml: body 7: " + std::string(section) + " center = [" +
+        expect_one_warning(at(center), "pool.toml: body 7: " + std::string(table.first) + " center = [" +
                                            format_vector(center) + "] is 3.8 m from the mesh");
       }
     }

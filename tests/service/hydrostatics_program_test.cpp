@@ -299,11 +299,14 @@ TEST_F(HydrostaticsProgram, AgreesWithClosedFormsInAnyFrameOfTheMesh) {
     Vec3 forward_B, up_B;
     double scale;
   };
-  for (const auto& [forward, up, forward_B, up_B, scale] :
-       {Frame{"x", "z", Vec3::UnitX(), Vec3::UnitZ(), 1.0},
-        Frame{"-y", "+z", -Vec3::UnitY(), Vec3::UnitZ(), 0.5},
-        Frame{"z", "y", Vec3::UnitZ(), Vec3::UnitY(), 0.001},
-        Frame{"-x", "-y", -Vec3::UnitX(), -Vec3::UnitY(), 1024.0}}) {
+  for (const Frame& frame : {Frame{"x", "z", Vec3::UnitX(), Vec3::UnitZ(), 1.0},
+                             Frame{"-y", "+z", -Vec3::UnitY(), Vec3::UnitZ(), 0.5},
+                             Frame{"z", "y", Vec3::UnitZ(), Vec3::UnitY(), 0.001},
+                             Frame{"-x", "-y", -Vec3::UnitX(), -Vec3::UnitY(), 1024.0}}) {
+    // Not a structured binding, which lambdas cannot capture in clang 14.
+    const auto forward = frame.forward, up = frame.up;
+    const Vec3 forward_B = frame.forward_B, up_B = frame.up_B;
+    const double scale = frame.scale;
     SCOPED_TRACE(std::string(forward) + " " + up);
     const auto at = [&, port_B = Vec3(up_B.cross(forward_B))](double ahead, double to_port, double above) {
       return Vec3((7.0 + ahead) * forward_B + (to_port - 3.0) * port_B + (4.0 + above) * up_B);
