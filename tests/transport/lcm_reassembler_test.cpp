@@ -155,7 +155,7 @@ RawBytes forged_fragment(int number) {
   append(packet, 0, 2);
   append(packet, 0xffff, 2);
   append(packet, "A");
-  append(packet, 0, 15);
+  packet.resize(packet.size() + 15);
   return packet;
 }
 
