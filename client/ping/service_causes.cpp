@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 
 #include "base/format.h"
 #include "messages/sea_state.h"
@@ -90,15 +92,12 @@ std::vector<Warning> service_warnings(const Scene& scene, const ServiceInfo& ser
   const ServiceStatus& status = *service.status;
   const std::string subject = "the service (instance " + std::to_string(status.instance_id) + ")";
   const std::string log = "Its log names session, body and likely cause";
-  const std::size_t others =
-      std::max(static_cast<std::size_t>(std::max<std::int64_t>(status.other_services, 0)),
-               service.instance_ids.size() - 1);
+  const std::int64_t others = std::max(status.other_services, std::ssize(service.instance_ids) - 1);
   if (others > 0) {
-    warnings.push_back({subject,
-                        pluralize(static_cast<std::int64_t>(others), "other service", "other services") +
-                            " on the channel of its status",
-                        "one service", "another one was not stopped: every request gets two responses",
-                        "Stop it, or give each an LCM URL or channels of its own"});
+    warnings.push_back(
+        {subject, pluralize(others, "other service", "other services") + " on the channel of its status",
+         "one service", "another one was not stopped: every request gets two responses",
+         "Stop it, or give each an LCM URL or channels of its own"});
   }
   if (status.scene_fingerprint != scene_fingerprint(scene)) {
     warnings.push_back({subject, "its scene " + status.scene + " is not that of " + scene.name(),

@@ -1,6 +1,6 @@
 // Searches for the largest value of a figure of random draws, such as the error of a result over its
 // published bound. It climbs: from the draws of the highest value among many it changes a few at a time, a
-// little or wholly, and keeps what is not lower. Any generator of random cases can be searched so, without
+// little or entirely, and keeps what is not lower. Any generator of random cases can be searched so, without
 // parameters of its own.
 #pragma once
 
