@@ -30,6 +30,7 @@ RequestHandler::RequestHandler(const Scene& scene, const RequestHandlerOptions& 
     : scene_(&scene),
       max_sessions_(options.max_sessions),
       budgets_(options.budgets),
+      checks_motion_(options.checks_motion),
       evaluator_(scene, options.threads),
       water_(scene),
       conditions_(scene),
@@ -87,7 +88,7 @@ RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
   session.last_use = ++use_;
   const auto index = static_cast<std::size_t>(&session - sessions_.data());
   const bool has_reply = !session.last_request.empty();
-  check_motion(session, *request);
+  if (checks_motion_) check_motion(session, *request);
   return finish(index, [&] {
     bool has_room = begin_work(*request, bytes.size(), session);
     const bool complete =

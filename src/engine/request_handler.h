@@ -53,6 +53,7 @@ struct RequestHandlerOptions {
   std::size_t max_sessions = 64;  // >= 1; the lookup is linear
   unsigned threads = 0;           // for the bodies of one request; 0: number of hardware threads
   RequestBudgets budgets{};
+  bool checks_motion = true;  // see take_findings()
 };
 
 class RequestHandler {
@@ -223,6 +224,7 @@ class RequestHandler {
   const Scene* scene_;
   std::size_t max_sessions_;
   RequestBudgets budgets_;
+  bool checks_motion_;
   std::vector<Session> sessions_;
   std::uint64_t use_ = 0;
   ServiceCounters counters_;
