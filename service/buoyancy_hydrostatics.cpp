@@ -1,5 +1,6 @@
 // buoyancy-hydrostatics: the program around equilibria, righting arms and hydrostatic tables.
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -23,8 +24,28 @@ namespace {
 struct Output {
   std::string text;  // on standard output
   std::string csv;
-  std::string html;  // empty unless it is asked for
+  std::string html;                   // empty unless it is asked for
+  std::optional<Error> missing = {};  // what the output lacks
 };
+
+Error no_balance(const std::string& heels) {
+  return {"gz", "no balance at a heel of " + heels,
+          "a body that floats at each heel, and trims by less than 89 degrees",
+          "the body sinks, takes in water or has no stable trim",
+          "End the heels before it, see the command equilibrium, or fix the trim with --fixed-trim"};
+}
+
+// nullopt: the curve has all heels that were asked for.
+std::optional<Error> missing_heels(const RightingCurve& curve) {
+  std::string heels;
+  for (const std::optional<double>& heel : {curve.unbalanced_starboard, curve.unbalanced_port}) {
+    if (!heel) continue;
+    if (!heels.empty()) heels += " and of ";
+    heels += format_number(*heel * 180.0 / std::numbers::pi, 4) + " degrees";
+  }
+  if (heels.empty()) return std::nullopt;
+  return no_balance(heels + "; there are results only between it and heel 0");
+}
 
 std::string text_of(const nlohmann::ordered_json& json) {
   return json.dump(2) + "\n";
@@ -83,18 +104,12 @@ Expected<Output> righting_output(const LoadedBody& loaded, const HydrostaticsOpt
   arms.progress = [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total, done); };
   const auto results = righting_results(loaded.body, loaded.water(), plan.heels, plan.points, arms);
   progress.clear();
-  if (!results) {
-    return make_error(
-        {"gz",
-         "no balance at a heel of " + format_number(results.error() * 180.0 / std::numbers::pi, 4) +
-             " degrees",
-         "a body that floats at each heel, and trims by less than 89 degrees",
-         "the body sinks, takes in water or has no stable trim",
-         "End the heels before it, see the command equilibrium, or fix the trim with --fixed-trim"});
-  }
+  if (!results) return make_error(no_balance("0 degrees"));
+  if (results->curve.points.empty()) return tl::unexpected(*missing_heels(results->curve));
   return Output{options.json ? text_of(righting_json(*results)) : righting_text(*results),
                 righting_csv(*results),
-                three.empty() ? "" : righting_page(page_subject(loaded, plan), *results, plan.arms, three)};
+                three.empty() ? "" : righting_page(page_subject(loaded, plan), *results, plan.arms, three),
+                missing_heels(results->curve)};
 }
 
 int run(int argc, char** argv) {
@@ -119,6 +134,8 @@ int run(int argc, char** argv) {
   UpAxisCheck up;
   if (!options.mesh.empty()) up = {.up_B = plan->table.axes.up_B, .remedy = UpRemedy::kShipAxis};
   for (const Warning& warning : mesh_warnings(loaded->scene, up)) print_warning(app, warning);
+  const bool needs_mass = plan->command != HydrostaticsCommand::kTable;
+  if (needs_mass && loaded->assumed_mass) print_warning(app, *loaded->assumed_mass);
 
   Expected<Output> output;
   switch (plan->command) {
@@ -139,7 +156,8 @@ int run(int argc, char** argv) {
     if (const Expected<void> written = write_file(*path, *text); !written)
       return fail(written.error(), kFailure);
   }
-  return print_output(app, output->text) ? kSuccess : kFailure;
+  if (!print_output(app, output->text)) return kFailure;
+  return output->missing ? fail(*output->missing, kFailure) : kSuccess;
 }
 
 }  // namespace

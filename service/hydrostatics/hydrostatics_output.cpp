@@ -284,6 +284,8 @@ Json righting_json(const RightingResults& results) {
           {"crossings", std::move(crossings)},
           {"vanishing_starboard", json_or_null(in_degrees(results.curve.vanishing_starboard()))},
           {"vanishing_port", json_or_null(in_degrees(results.curve.vanishing_port()))},
+          {"unbalanced_starboard", json_or_null(in_degrees(results.curve.unbalanced_starboard))},
+          {"unbalanced_port", json_or_null(in_degrees(results.curve.unbalanced_port))},
           {"max_starboard", maximum(results.curve.max_starboard)},
           {"max_port", maximum(results.curve.max_port)},
           {"deck_edge", immersions_json(results.deck_edge)},

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "base/format.h"
 #include "scene/floating_bodies.h"
 
 namespace buoyancy::service {
@@ -61,7 +62,16 @@ Expected<LoadedBody> load_body(const HydrostaticsOptions& options, const Hydrost
   if (options.mesh.empty()) {
     name = options.scene.filename().string().append(", ").append((*body)->name);
   }
-  return LoadedBody{std::move(name), *std::move(scene), std::move(mesh), *std::move(floating)};
+  std::optional<Warning> assumed;
+  const DynamicsSpec& dynamics = (*body)->dynamics;
+  if (options.mesh.empty() && !dynamics.mass && !dynamics.density) {
+    assumed = {scene->name() + ": body '" + (*body)->name + "'",
+               "a mass of " + format_number(mass->mass, 6) + " kg is assumed",
+               "mass or density in [body.client]", "without them a body has half the density of the water",
+               "Set one of them to what the body weighs"};
+  }
+  return LoadedBody{std::move(name), *std::move(scene), std::move(mesh), *std::move(floating),
+                    std::move(assumed)};
 }
 
 }  // namespace buoyancy::service

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "flotation/floating_body.h"
@@ -15,6 +16,7 @@ struct LoadedBody {
   Scene scene;
   std::shared_ptr<const HydrostaticMesh> mesh;  // with its tree
   FloatingBody body;                            // of `mesh`
+  std::optional<Warning> assumed_mass = {};     // set: the scene does not say what the body weighs
 
   const Water& water() const { return scene.water(); }
 };

@@ -52,7 +52,7 @@ std::vector<StabilityCriterion> general_criteria(const FloatingBody& body, const
   constexpr double kStep = 1e-4;  // [rad], of the central difference
   const auto right = righting_arm(body, water, kStep, options);
   const auto left = righting_arm(body, water, -kStep, options);
-  if (!curve || !right || !left) return {};
+  if (!curve || curve->unbalanced_starboard || !right || !left) return {};
 
   const bool reaches_thirty = flooding >= kThirty;
   const double to_thirty = area_to(*curve, kThirty);
@@ -88,15 +88,14 @@ std::optional<FirstImmersions> immersions(const FloatingBody& body, const Water&
 
 }  // namespace
 
-tl::expected<RightingResults, double> righting_results(const FloatingBody& body, const Water& water,
-                                                       std::span<const double> heels,
-                                                       const ImmersionPoints& points,
-                                                       const RightingArmOptions& options) {
+std::optional<RightingResults> righting_results(const FloatingBody& body, const Water& water,
+                                                std::span<const double> heels, const ImmersionPoints& points,
+                                                const RightingArmOptions& options) {
   const auto count = static_cast<std::int64_t>(heels.size());
   constexpr std::int64_t kCriteriaHeels = kMaxHeel + 1;
-  tl::expected<RightingCurve, double> curve =
+  std::optional<RightingCurve> curve =
       righting_curve(body, water, heels, with_progress(options, 0, kCriteriaHeels));
-  if (!curve) return tl::unexpected(curve.error());
+  if (!curve) return std::nullopt;
   RightingResults results{.curve = *std::move(curve),
                           .criteria = {},
                           .deck_edge = immersions(body, water, points.deck_edge_B, options),

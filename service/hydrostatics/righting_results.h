@@ -34,12 +34,11 @@ struct ImmersionPoints {
   std::vector<Vec3> deck_edge_B, downflooding_B;
 };
 
-// heels and error: see righting_curve(). The curve of the criteria ends at the angle of downflooding to
+// heels and nullopt: see righting_curve(). The curve of the criteria ends at the angle of downflooding to
 // starboard; that of the results does not. options.progress counts the heels of the curve and of the
 // criteria.
-tl::expected<RightingResults, double> righting_results(const FloatingBody& body, const Water& water,
-                                                       std::span<const double> heels,
-                                                       const ImmersionPoints& points,
-                                                       const RightingArmOptions& options);
+std::optional<RightingResults> righting_results(const FloatingBody& body, const Water& water,
+                                                std::span<const double> heels, const ImmersionPoints& points,
+                                                const RightingArmOptions& options);
 
 }  // namespace buoyancy::service

@@ -218,12 +218,12 @@ std::optional<double> RightingCurve::vanishing_port() const {
   return std::nullopt;
 }
 
-tl::expected<RightingCurve, double> righting_curve(const FloatingBody& body, const Water& water,
-                                                   std::span<const double> heels,
-                                                   const RightingArmOptions& options) {
+std::optional<RightingCurve> righting_curve(const FloatingBody& body, const Water& water,
+                                            std::span<const double> heels,
+                                            const RightingArmOptions& options) {
   const ArmSearch search(body, water, options);
   const std::optional<RightingArm> upright = search.at(0.0, 0.0);
-  if (!upright) return tl::unexpected(0.0);
+  if (!upright) return std::nullopt;
 
   // Outwards from heel 0, to either side.
   std::vector<RightingArm> arms(heels.size());
@@ -245,19 +245,20 @@ tl::expected<RightingCurve, double> righting_curve(const FloatingBody& body, con
     if (options.progress) options.progress(done, static_cast<std::int64_t>(heels.size()));
     return true;
   };
+  RightingCurve curve;
+  std::size_t end = first_positive;  // of the heels that have an arm
   double by_trim = 0.0;
-  for (std::size_t i = first_positive; i < heels.size(); ++i) {
-    if (!fill(i, i > first_positive ? arms[i - 1] : *upright, by_trim)) return tl::unexpected(heels[i]);
-  }
+  while (end < heels.size() && fill(end, end > first_positive ? arms[end - 1] : *upright, by_trim)) ++end;
+  if (end < heels.size()) curve.unbalanced_starboard = heels[end];
+  std::size_t begin = first_positive;
   by_trim = 0.0;
-  for (std::size_t i = first_positive; i-- > 0;) {
-    if (!fill(i, i + 1 < first_positive ? arms[i + 1] : *upright, by_trim)) return tl::unexpected(heels[i]);
-  }
+  while (begin > 0 && fill(begin - 1, begin < first_positive ? arms[begin] : *upright, by_trim)) --begin;
+  if (begin > 0) curve.unbalanced_port = heels[begin - 1];
+  arms = {arms.begin() + static_cast<std::ptrdiff_t>(begin), arms.begin() + static_cast<std::ptrdiff_t>(end)};
 
   constexpr double kUpright = 1e-9;  // of the body's size: an arm below it is rounding
   const bool has_list = std::abs(upright->gz) > kUpright * body.reach();
-  RightingCurve curve;
-  for (std::size_t i = 0; i < arms.size(); ++i) curve.points.push_back({arms[i], areas[i]});
+  for (std::size_t i = 0; i < arms.size(); ++i) curve.points.push_back({arms[i], areas[begin + i]});
   for (std::size_t i = 0; i + 1 < arms.size(); ++i) {
     const RightingArm& low = arms[i];
     const RightingArm& high = arms[i + 1];

@@ -61,10 +61,13 @@ struct ArmCrossing {
 };
 
 struct RightingCurve {
-  std::vector<RightingCurvePoint> points;  // one per heel, in their order
+  std::vector<RightingCurvePoint> points;  // in the order of the heels
   std::vector<ArmCrossing> crossings;      // ascending; between heels that were asked for
   // The largest arm to either side, between the heels that were asked for; nullopt where none is above 0.
   std::optional<RightingArm> max_starboard, max_port;
+  // [rad], the first heel outwards to either side at which righting_arm() has no result: it and those beyond
+  // it have no points, since their areas are unknown.
+  std::optional<double> unbalanced_starboard, unbalanced_port;
 
   // [rad], the end of the range of stability to starboard (port: below 0): the first heel beyond 0, or
   // beyond the angle of loll, at which the arm vanishes.
@@ -72,11 +75,11 @@ struct RightingCurve {
   std::optional<double> vanishing_port() const;
 };
 
-// heels: [rad], -pi to pi, ascending. Each trim starts from that of its neighbour towards heel 0. Error: the
-// heel, 0 or the first one outwards, at which righting_arm() has no result. Crossings and maxima are refined
-// to 1e-10 rad and 1e-7 rad, which takes some 60 more arms.
-tl::expected<RightingCurve, double> righting_curve(const FloatingBody& body, const Water& water,
-                                                   std::span<const double> heels,
-                                                   const RightingArmOptions& options = {});
+// heels: [rad], -pi to pi, ascending. Each trim starts from that of its neighbour towards heel 0. Returns
+// nullopt where righting_arm() has no result at heel 0. Crossings and maxima are refined to 1e-10 rad and
+// 1e-7 rad, which takes some 60 more arms.
+std::optional<RightingCurve> righting_curve(const FloatingBody& body, const Water& water,
+                                            std::span<const double> heels,
+                                            const RightingArmOptions& options = {});
 
 }  // namespace buoyancy

@@ -286,6 +286,27 @@ TEST_F(HydrostaticsProgram, TakesWaterScaleAndOpenPolicyWithAMesh) {
   // Heeled by 45 degrees it displaces a prism, up to its edge: 4 times 1 x 1 / 2 m^3.
   EXPECT_TRUE(contains(capsized.error, "no balance at a heel of 60 degrees"));
   EXPECT_TRUE(contains(capsized.error, "takes in water"));
+  const auto curve = nlohmann::json::parse(capsized.output);
+  ASSERT_EQ(curve.at("points").size(), 3U);
+  EXPECT_EQ(curve.at("points").at(2).at("heel"), 40.0);
+  EXPECT_EQ(curve.at("unbalanced_starboard"), 60.0);
+  EXPECT_EQ(curve.at("unbalanced_port"), nullptr);
+  EXPECT_TRUE(curve.at("criteria").at("values").empty());
+
+  open.back() = "60:80:20";
+  const ProgramRun nothing = run(open);
+  EXPECT_EQ(nothing.exit_code, 1);
+  EXPECT_TRUE(nothing.output.empty());
+  EXPECT_TRUE(contains(nothing.error, "no balance at a heel of 60 degrees"));
+}
+
+TEST_F(HydrostaticsProgram, SaysThatAMassIsAssumed) {
+  const std::string undefined = scene("center_of_mass = [0, 0, 2]\n");
+  const ProgramRun arms = run({"gz", "--scene", undefined, "--heel", "0:10:5"});
+  EXPECT_EQ(arms.exit_code, 0);
+  EXPECT_TRUE(contains(arms.error, "a mass of 9.84e+06 kg is assumed")) << arms.error;
+  EXPECT_EQ(run({"table", "--scene", undefined, "--draft", "6:6:1"}).error, "");
+  EXPECT_EQ(run({"gz", "--scene", ship(), "--heel", "0:10:5"}).error, "");
 }
 
 // A barge whose middle is beside the origin of its mesh, with its mass to port, whichever axes of the mesh
