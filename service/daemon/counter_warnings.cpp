@@ -34,7 +34,8 @@ const char* remedy_for(BodyStatus status) {
 
 }  // namespace
 
-std::vector<LogEvent> warnings_since(const ServiceCounters& before, const ServiceCounters& now) {
+std::vector<LogEvent> warnings_since(const ServiceCounters& before, const ServiceCounters& now,
+                                     const BodyFailures& newest) {
   struct Cause {
     DecodeError error;
     std::int64_t ServiceCounters::*counter;
@@ -54,8 +55,11 @@ std::vector<LogEvent> warnings_since(const ServiceCounters& before, const Servic
     const auto status = static_cast<BodyStatus>(i);
     const std::int64_t increase = now.bodies[i] - before.bodies[i];
     if (status != BodyStatus::kOk && increase > 0) {
-      warnings.push_back(
-          {fmt::format("bodies with status {}", to_string(status)), increase, remedy_for(status)});
+      const std::string place =
+          newest[i] ? fmt::format("body {} in session {}", newest[i]->body_id, newest[i]->session_id) : "";
+      const std::string remedy = remedy_for(status);
+      warnings.push_back({fmt::format("bodies with status {}", to_string(status)), increase,
+                          place + (place.empty() || remedy.empty() ? "" : "; ") + remedy});
     }
   }
   struct Growth {

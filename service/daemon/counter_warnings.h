@@ -7,6 +7,7 @@
 
 #include "engine/motion_check.h"
 #include "engine/pose_request_adapter.h"
+#include "engine/request_handler.h"
 #include "messages/status.h"
 #include "scene/scene.h"
 #include "service/daemon/rate_limited_log.h"
@@ -15,8 +16,9 @@
 namespace buoyancy::service {
 
 // One event per cause of rejection, per body status other than OK, and per other warning whose
-// counter has grown.
-std::vector<LogEvent> warnings_since(const ServiceCounters& before, const ServiceCounters& now);
+// counter has grown. newest: see RequestHandler::newest_failures(); each is named with its status.
+std::vector<LogEvent> warnings_since(const ServiceCounters& before, const ServiceCounters& now,
+                                     const BodyFailures& newest);
 
 // One event per kind of loss whose counter has grown.
 std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts& now,

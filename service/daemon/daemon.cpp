@@ -548,7 +548,9 @@ void Daemon::publish_status() {
                               pluralize(counters.computed + counters.retries, "request", "requests"),
                               last_reload_failed_ ? "; the last reload failed, see the log" : "",
                               faults_ ? "; injects faults on purpose (--inject)" : ""));
-  for (const LogEvent& warning : warnings_since(reported_, counters)) warnings_.add(warning, now);
+  for (const LogEvent& warning : warnings_since(reported_, counters, handler_.newest_failures())) {
+    warnings_.add(warning, now);
+  }
   for (const LogEvent& warning : warnings_since(reported_drops_, drops, receive_buffer_limit_)) {
     warnings_.add(warning, now);
   }

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cstring>
 #include <new>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -18,6 +19,11 @@ bool same_bytes(Bytes a, Bytes b) {
 }
 
 constexpr std::size_t kMaxFindings = 16;
+
+std::int64_t failed_bodies(const ServiceCounters& counters) {
+  return std::accumulate(counters.bodies.begin(), counters.bodies.end(), std::int64_t{0}) -
+         counters.bodies[static_cast<std::size_t>(BodyStatus::kOk)];
+}
 
 // One entry per body, if any body has the hydrostatics output.
 std::size_t hydrostatics_cache_size(const Scene& scene) {
@@ -387,7 +393,10 @@ bool RequestHandler::evaluate_part(const RequestView& request, Session& session,
     }
     outputs.load_places = std::span(load_places_).first(count);
   }
-  if (!evaluator_.evaluate(request, states, water, outputs, counters_, deadline)) {
+  const std::int64_t failures = failed_bodies(counters_);
+  const bool complete = evaluator_.evaluate(request, states, water, outputs, counters_, deadline);
+  work.has_failures |= failed_bodies(counters_) > failures;
+  if (!complete) {
     const auto unfinished = evaluator_.unfinished();
     work.unfinished.assign(unfinished.begin(), unfinished.end());
     return false;
@@ -399,10 +408,22 @@ bool RequestHandler::evaluate_part(const RequestView& request, Session& session,
     if (load_places_[i] == end || status == BodyStatus::kOk) continue;
     outputs.loads.set(load_places_[i], {.body_id = request.body_id(work.next + i), .status = status});
   }
+  if (std::exchange(work.has_failures, false)) {
+    record_failures(request, work.next, work.next + count, outputs.response);
+  }
   work.loads = loads;
   work.next += count;
   work.unfinished.clear();
   return true;
+}
+
+void RequestHandler::record_failures(const RequestView& request, std::size_t begin, std::size_t end,
+                                     const ResponseWriter& response) {
+  for (std::size_t i = begin; i < end; ++i) {
+    const BodyStatus status = response.body(i).status;
+    if (status == BodyStatus::kOk) continue;
+    newest_failures_[static_cast<std::size_t>(status)] = {request.id().session_id, request.body_id(i)};
+  }
 }
 
 void RequestHandler::apply_conditions(std::int64_t utime) {

@@ -16,10 +16,10 @@
 //   has the same bytes: it is that of the water at the time of its begin; if the scene or a condition of a
 //   compartment or tank changes meanwhile, the request starts again.
 // - What a request may cost is bounded by RequestBudgets. An allocation that fails costs the request that
-// needs
-//   it, and nothing else.
+//   needs it, and nothing else.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <limits>
@@ -55,6 +55,14 @@ struct RequestHandlerOptions {
   RequestBudgets budgets{};
   bool checks_motion = true;  // see take_findings()
 };
+
+// A state of a body whose status is not OK.
+struct BodyFailure {
+  std::int64_t session_id = 0;
+  std::int32_t body_id = 0;
+};
+// The newest one of each status, indexed by BodyStatus; nullopt: there has been none.
+using BodyFailures = std::array<std::optional<BodyFailure>, kBodyStatusCount>;
 
 class RequestHandler {
  public:
@@ -160,6 +168,8 @@ class RequestHandler {
   // them are counted; of many at once the first are kept.
   std::vector<MotionFinding> take_findings();
 
+  const BodyFailures& newest_failures() const { return newest_failures_; }
+
   // Number of threads available for the bodies of one request.
   unsigned thread_count() const { return evaluator_.thread_count(); }
   const ServiceCounters& counters() const { return counters_; }
@@ -171,6 +181,7 @@ class RequestHandler {
     bool in_progress = false;               // between two slices
     std::size_t next = 0;                   // the states before it are evaluated
     std::vector<std::uint32_t> unfinished;  // of the part from next on; empty: all of it
+    bool has_failures = false;              // in that part
     std::size_t loads = 0;                  // number of loads of the states before next
     std::size_t hydrostatics_next = 0;      // the hydrostatics of the states before it are computed
     std::size_t hydrostatics = 0;           // number of them
@@ -200,6 +211,8 @@ class RequestHandler {
 
   void count_decode_error(DecodeError error);
   void check_motion(Session& session, const RequestView& request);
+  void record_failures(const RequestView& request, std::size_t begin, std::size_t end,
+                       const ResponseWriter& response);
   // Evicts the least recently used session if necessary; nullptr: all have a request in progress.
   Session* start_session(const RequestId& first);
   // Begins a request, or begins it again. False: there is no room for what it will retain.
@@ -242,6 +255,7 @@ class RequestHandler {
   };
   std::vector<CachedHydrostatics> cached_hydrostatics_;  // by body; empty if no body has this output
   std::vector<MotionFinding> findings_;
+  BodyFailures newest_failures_;
   std::optional<std::size_t>
       last_session_;                      // index into sessions_; nullopt: the last request was not answered
   std::vector<std::size_t> in_progress_;  // indices into sessions_, in the order of their turns

@@ -61,6 +61,30 @@ TEST(RequestHandler, ReturnsBodiesInRequestedOrderWithRepetitions) {
   EXPECT_EQ(response.bodies[5].submerged_volume, 0.0);
   EXPECT_EQ(response.bodies[6].status, BodyStatus::kNonFinitePose);
   EXPECT_EQ(bodies_computed(handler.counters()), 7);
+  const auto& newest = handler.newest_failures();
+  EXPECT_FALSE(newest[static_cast<std::size_t>(BodyStatus::kOk)]);
+  EXPECT_FALSE(newest[static_cast<std::size_t>(BodyStatus::kNoSea)]);
+  const auto& unknown = newest[static_cast<std::size_t>(BodyStatus::kUnknownBody)];
+  const auto& not_finite = newest[static_cast<std::size_t>(BodyStatus::kNonFinitePose)];
+  ASSERT_TRUE(unknown && not_finite);
+  EXPECT_EQ(unknown->body_id, kNoBody);
+  EXPECT_EQ(unknown->session_id, 1);
+  EXPECT_EQ(not_finite->body_id, kBox);
+}
+
+// A failure in an early slice is named although other requests are answered before the whole one is.
+TEST(RequestHandler, NamesFailuresOfRequestsInSlices) {
+  RequestHandler handler(shared_box_scene(), {.threads = 1});
+  constexpr Deadline kPassed{};
+  const ByteVector sliced = request_bytes({.session_id = 5, .seq = 1},
+                                          {upright(kNoBody, 0.0), upright(kBox, 0.1), upright(kBox, 0.2)});
+  ASSERT_EQ(handler.begin(sliced, kPassed), RequestHandler::Step::kStarted);
+  handler.handle(request(6, 1));
+  while (handler.in_progress() > 0) handler.resume(kPassed);
+  const auto& unknown = handler.newest_failures()[static_cast<std::size_t>(BodyStatus::kUnknownBody)];
+  ASSERT_TRUE(unknown);
+  EXPECT_EQ(unknown->body_id, kNoBody);
+  EXPECT_EQ(unknown->session_id, 5);
 }
 
 TEST(RequestHandler, HandlesThousandBodies) {

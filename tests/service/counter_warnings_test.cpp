@@ -26,7 +26,7 @@ TEST(CounterWarnings, AreEmptyIfNothingWentWrong) {
   now.seas_received = 2;
   now.wave_patches = 1000;
   count(now, BodyStatus::kOk) = 5;
-  EXPECT_TRUE(warnings_since({}, now).empty());
+  EXPECT_TRUE(warnings_since(ServiceCounters{}, now, {}).empty());
 }
 
 // One event for each counter that grows, by how much it grew, and what to do where the name does not say it.
@@ -72,15 +72,28 @@ TEST(CounterWarnings, NameEveryCounterThatGrows) {
     ServiceCounters before;
     counter(before) = 3;
     ServiceCounters now = before;
-    EXPECT_TRUE(warnings_since(before, now).empty()) << message;
+    EXPECT_TRUE(warnings_since(before, now, {}).empty()) << message;
     counter(now) += 4;
-    const std::vector<LogEvent> warnings = warnings_since(before, now);
+    const std::vector<LogEvent> warnings = warnings_since(before, now, {});
     ASSERT_EQ(warnings.size(), 1U) << message;
     EXPECT_THAT(warnings[0].message, HasSubstr(message));
     EXPECT_EQ(warnings[0].count, 4) << message;
     EXPECT_THAT(warnings[0].detail, HasSubstr(detail));
     EXPECT_EQ(warnings[0].detail.empty(), *detail == '\0') << message;
   }
+}
+
+TEST(CounterWarnings, NameTheNewestBodyOfAStatus) {
+  BodyFailures newest;
+  newest[static_cast<std::size_t>(BodyStatus::kUnknownBody)] = {42, 7};
+  newest[static_cast<std::size_t>(BodyStatus::kNoSea)] = {43, 8};
+  ServiceCounters now;
+  count(now, BodyStatus::kUnknownBody) = 2;
+  count(now, BodyStatus::kNoSea) = 1;
+  const std::vector<LogEvent> warnings = warnings_since(ServiceCounters{}, now, newest);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_EQ(warnings[0].detail, "body 7 in session 42");
+  EXPECT_THAT(warnings[1].detail, HasSubstr("body 8 in session 43; no sea has been received"));
 }
 
 TEST(CounterWarnings, NameEveryLossThatGrows) {
