@@ -85,10 +85,11 @@ std::string summary(const RecordedRun& run, const ReportArguments& arguments, st
     kept += static_cast<std::int64_t>(body.rows.size());
   }
   const auto shown = std::ranges::count_if(run.bodies, &BodyRun::shown);
-  std::string text = arguments.output.string() + ": " + std::to_string(shown) + " bodies, " +
-                     std::to_string(recorded) + " rows";
+  std::string text = arguments.output.string() + ": " + pluralize(shown, "body", "bodies") + ", " +
+                     pluralize(recorded, "row", "rows");
   if (kept < recorded) text += ", decimated to " + std::to_string(kept) + " with the extremes kept";
-  if (others > 0) text += "; " + std::to_string(others) + " more bodies only as a summary (see --bodies)";
+  if (others > 0)
+    text += "; " + pluralize(others, "more body", "more bodies") + " only as a summary (see --bodies)";
   return text + "; " + std::to_string((bytes + 500'000) / 1'000'000) + " MB\n";
 }
 

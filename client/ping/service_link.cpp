@@ -8,6 +8,7 @@
 
 #include <poll.h>
 
+#include "base/format.h"
 #include "transport/message_limits.h"
 
 namespace buoyancy::ping {
@@ -123,8 +124,8 @@ Expected<void> ServiceLink::subscribe(const AwaitedOutputs& scene_outputs) {
 std::optional<Warning> ServiceLink::reserve(std::size_t bodies, std::size_t reply_bytes) {
   const std::optional<ReceiveBuffer> buffer = connection_.reserve_receive_buffer(reply_bytes);
   if (!buffer) return std::nullopt;
-  return receive_buffer_warning("reply for " + std::to_string(bodies) + " bodies", reply_bytes,
-                                options_.wrenches_channel, *buffer);
+  return receive_buffer_warning("reply for " + pluralize(static_cast<std::int64_t>(bodies), "body", "bodies"),
+                                reply_bytes, options_.wrenches_channel, *buffer);
 }
 
 Expected<void> ServiceLink::send(const RequestId& id, Bytes request) {

@@ -21,6 +21,10 @@ timespec to_timespec(Clock::duration duration) {
   return {static_cast<time_t>(nanoseconds / 1'000'000'000), static_cast<long>(nanoseconds % 1'000'000'000)};
 }
 
+std::string bodies_text(std::size_t count) {
+  return pluralize(static_cast<std::int64_t>(count), "body", "bodies");
+}
+
 }  // namespace
 
 void LcmRequestChannel::Inbox::receive(Bytes bytes) {
@@ -128,7 +132,7 @@ Expected<LcmRequestChannel> LcmRequestChannel::open(const ChannelOptions& option
 Expected<void> LcmRequestChannel::check_size(std::size_t bodies) const {
   const std::size_t bytes = request_size(bodies);
   if (!connection_.is_network() || bytes <= kMaxMessageBytes) return {};
-  return check_message_size("request for " + std::to_string(bodies) + " bodies", bytes);
+  return check_message_size("request for " + bodies_text(bodies), bytes);
 }
 
 Expected<std::optional<Warning>> LcmRequestChannel::reserve(std::size_t bodies) {
@@ -139,8 +143,8 @@ Expected<std::optional<Warning>> LcmRequestChannel::reserve(std::size_t bodies) 
   buffer_warning_.reset();
   if (const std::optional<ReceiveBuffer> buffer = connection_.reserve_receive_buffer(bytes)) {
     const char* const messages = options_.wait_for_loads ? "response with loads for " : "response for ";
-    buffer_warning_ = receive_buffer_warning(messages + std::to_string(bodies) + " bodies", bytes,
-                                             options_.wrenches_channel, *buffer);
+    buffer_warning_ =
+        receive_buffer_warning(messages + bodies_text(bodies), bytes, options_.wrenches_channel, *buffer);
   }
   return buffer_warning_;
 }

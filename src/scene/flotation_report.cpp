@@ -56,6 +56,7 @@ std::string flotation_text(const FlotationOfBody& entry, const Body& body) {
   const std::size_t count = flotation.attitudes.size();
   text +=
       "  attitudes     " + pluralize(static_cast<std::int64_t>(count), "stable attitude", "stable attitudes");
+  text += ", heel and trim 0 with the body's z axis up";
   text += flotation.reached ? "; * is where it turns to from its orientation\n" : "\n";
   for (std::size_t i = 0; i < count; ++i) {
     const bool reached = flotation.reached == i;

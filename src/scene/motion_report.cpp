@@ -117,8 +117,9 @@ std::string known_text(const BodyMotions& motions, const Body& body) {
   const bool has_drag = body.hydrodynamics != nullptr && body.hydrodynamics->coefficients().drag;
   std::string text = joined("  balance       ", balance_text(motions));
   if (motions.turning_lever > kNoLever * body.prepared_mesh->mesh.diagonal) {
-    text += joined(", and turns: buoyancy acts ", format_rounded(motions.turning_lever),
-                   " m beside the centre of mass");
+    const bool floats = motions.balance == VerticalBalance::kFloats;
+    text += joined(floats ? " at its orientation, from which it turns" : ", and turns", ": buoyancy acts ",
+                   format_rounded(motions.turning_lever), " m beside the centre of mass");
   }
   text += "\n";
   text += terminal_velocity_text(motions);
@@ -126,6 +127,8 @@ std::string known_text(const BodyMotions& motions, const Body& body) {
     text += motion_text("  heave         ", motions.natural->heave, "m", has_drag);
     text += motion_text("  roll          ", motions.natural->roll, "rad", has_drag);
     text += motion_text("  pitch         ", motions.natural->pitch, "rad", has_drag);
+    text += joined("                of small motions about its orientation, ",
+                   motions.balance == VerticalBalance::kFloats ? "afloat\n" : "fully submerged\n");
   }
   if (std::isfinite(motions.max_explicit_step)) {
     text += joined("  explicit step below ", format_rounded(motions.max_explicit_step), " s, ",

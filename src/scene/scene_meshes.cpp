@@ -60,8 +60,17 @@ Expected<PreparedMesh*> SceneMeshes::find_or_prepare(const MeshDescription& mesh
                                                      const MeshUser& user, MeshReport* refused) {
   Key key = key_of(mesh, open);
   if (PreparedMesh* known = find(key)) return known;
+  const auto known = std::ranges::find(refused_, key, &RefusedKey::key);
+  if (known != refused_.end()) {
+    return make_error(user.error(
+        {source_name(mesh), "refused for " + known->first_user, "a mesh that can be used", "", ""}));
+  }
+  const auto refuse = [&](Error error) {
+    refused_.push_back({std::move(key), user.name});
+    return make_error(user.error(std::move(error)));
+  };
   Expected<ImportedMesh> imported = read_source(mesh, limits_);
-  if (!imported) return make_error(user.error(std::move(imported.error())));
+  if (!imported) return refuse(std::move(imported.error()));
   MeshPreparation preparation{mesh.repair.mirror, mesh.placement, options_};
   preparation.validation.open = open;
   preparation.validation.may_be_open = user.may_be_open;
@@ -69,7 +78,7 @@ Expected<PreparedMesh*> SceneMeshes::find_or_prepare(const MeshDescription& mesh
   preparation.validation.closing = mesh.repair.closing;
   Expected<PreparedMesh> prepared =
       prepare_mesh(*std::move(imported), source_name(mesh), preparation, refused);
-  if (!prepared) return make_error(user.error(std::move(prepared.error())));
+  if (!prepared) return refuse(std::move(prepared.error()));
   return add(std::move(key), *std::move(prepared));
 }
 

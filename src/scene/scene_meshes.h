@@ -26,7 +26,8 @@ class SceneMeshes {
   SceneMeshes(const ImportLimits& limits, const ValidationOptions& options)
       : limits_(limits), options_(options) {}
 
-  // Errors: those of import_mesh() and prepare_mesh(). refused: see prepare_mesh().
+  // Errors: those of import_mesh() and prepare_mesh(). refused: see prepare_mesh(); a mesh that has been
+  // refused before is not read again, has no report, and an error that names its first user.
   Expected<PreparedMesh*> find_or_prepare(const MeshDescription& mesh, OpenPolicy open, const MeshUser& user,
                                           MeshReport* refused = nullptr);
 
@@ -58,6 +59,11 @@ class SceneMeshes {
   ValidationOptions options_;
   std::vector<std::unique_ptr<PreparedMesh>> meshes_;
   std::vector<Key> keys_;  // in the order of meshes_
+  struct RefusedKey {
+    Key key;
+    std::string first_user;
+  };
+  std::vector<RefusedKey> refused_;
 };
 
 }  // namespace buoyancy

@@ -130,7 +130,8 @@ TEST(SceneFlotation, IsReportedAsText) {
   const std::string text = scene_report_text(scene, {.flotation = &flotation});
   for (const char* expected :
        {"  start         at equilibrium, from its orientation\n",
-        "  attitudes     4 stable attitudes; * is where it turns to from its orientation\n",
+        "  attitudes     4 stable attitudes, heel and trim 0 with the body's z axis up; * is where it turns "
+        "to from its orientation\n",
         "              * draft 0.7071 m, heel -45 deg, trim 0 deg, GM 0.2357 and 3.536 m, energy 4623 J\n",
         "                draft 0.7071 m, heel 135 deg, trim 0 deg, GM"}) {
     EXPECT_THAT(text, HasSubstr(expected));

@@ -29,7 +29,8 @@ TEST(MotionReport, FormatsDragAddedMassAndMotionsAsText) {
         "  balance       floats at a draft of 0.2195 m\n", "  terminal      rises at 1.0",
         " m/s, fully submerged\n", "  heave         period ", " s, damping ratio ",
         " at an amplitude of 0.03", " m\n", "  roll          period ", " at an amplitude of 0.1 rad\n",
-        "  pitch         period ", "  explicit step below ",
+        "  pitch         period ", "                of small motions about its orientation, afloat\n",
+        "  explicit step below ",
         "  mass ratio    added mass up to 1.705 times the mass: as an explicit force it diverges"}) {
     EXPECT_THAT(text, HasSubstr(expected));
   }
@@ -58,8 +59,10 @@ TEST(MotionReport, FormatsWhatDoesNotApplyAsText) {
                     HasSubstr("  heave         nothing restores it\n"), Not(HasSubstr("terminal"))))
       << "without drag there is no terminal velocity";
   EXPECT_THAT(report("[body.client]\ndensity = 1025\n"), HasSubstr("  balance       neutrally buoyant\n"));
-  EXPECT_THAT(report("[body.client]\ncenter_of_mass = [0.1, 0, 0]\nmass = 100\ninertia = [9, 9, 9]\n"),
-              HasSubstr(" m, and turns: buoyancy acts 0.1 m beside the centre of mass\n"));
+  EXPECT_THAT(
+      report("[body.client]\ncenter_of_mass = [0.1, 0, 0]\nmass = 100\ninertia = [9, 9, 9]\n"),
+      HasSubstr(" m at its orientation, from which it turns: buoyancy acts 0.1 m beside the centre of "
+                "mass\n"));
   EXPECT_THAT(report("[body.drag]\nlinear = [1, 1, 1, 1, 1, 1]\n"),
               HasSubstr("  motions       unknown: no mass in [body.client]\n"));
 }

@@ -275,17 +275,23 @@ mesh = "none.obj"
 id = 3
 mesh = "open.obj"
 close_holes = 3.0
+[[body]]
+id = 4
+mesh = "./open.obj"
 )");
   const ProgramRun check = run("buoyancyd", {"--scene", scene, "--check"});
   EXPECT_EQ(check.exit_code, 2);
   EXPECT_NE(check.output.find("1: 4 edges"), std::string::npos) << check.output;
   EXPECT_NE(check.error.find("body 1, "), std::string::npos) << check.error;
-  EXPECT_NE(check.error.find("body 2, part 'part 0'"), std::string::npos) << check.error;
+  EXPECT_NE(check.error.find("body 2, part 'part 0', "), std::string::npos) << check.error;
+  EXPECT_NE(check.error.find("refused for body 1"), std::string::npos) << check.error;
+  EXPECT_EQ(check.output.find("mesh "), check.output.rfind("mesh ")) << check.output;
   EXPECT_EQ(check.error.find("body 3"), std::string::npos) << check.error;
   const Json json = Json::parse(run("buoyancyd", {"--scene", scene, "--check", "--json"}).output);
-  ASSERT_EQ(json["refused"].size(), 2U);
+  ASSERT_EQ(json["refused"].size(), 3U);
   EXPECT_EQ(json["refused"][0]["holes"].size(), 1U);
   EXPECT_TRUE(json["refused"][1]["error"].is_string());
+  EXPECT_EQ(json["refused"][2].size(), 1U) << "the error alone: the mesh was reported before";
 }
 
 }  // namespace
