@@ -352,7 +352,8 @@ typedef struct buoyancy_loads {
   double* added_mass_forces;   // [N], W, without the part that the matrix below gives; 3 n
   double* added_mass_torques;  // [N m], W; 3 n
   double* added_masses;        // 6 by 6 [kg, kg m, kg m^2], W's axes; 36 n
-  double* dampings;            // -d(force, torque)/d(velocity), 6 by 6, W's axes; 36 n
+  double* dampings;            // -d(force, torque)/d(velocity), 6 by 6: rows [N, N m], columns
+                               // [m/s, rad/s], W's axes; 36 n
   double* water_velocities;    // [m/s], W; 3 n
 } buoyancy_loads;
 

@@ -70,23 +70,23 @@ class Loads:
     @property
     def buoyancy_torque(self) -> Array: ...  # (K, 3), N m
     @property
-    def drag_force(self) -> Array: ...
+    def drag_force(self) -> Array: ...  # (K, 3), N
     @property
-    def drag_torque(self) -> Array: ...
+    def drag_torque(self) -> Array: ...  # (K, 3), N m
     @property
-    def added_mass_force(self) -> Array: ...
+    def added_mass_force(self) -> Array: ...  # (K, 3), N
     @property
-    def added_mass_torque(self) -> Array: ...
+    def added_mass_torque(self) -> Array: ...  # (K, 3), N m
     @property
     def added_mass(self) -> Array: ...  # (K, 6, 6), kg, kg m, kg m^2
     @property
-    def damping(self) -> Array: ...  # (K, 6, 6)
+    def damping(self) -> Array: ...  # (K, 6, 6), N, N m per m/s, rad/s
     @property
     def water_velocity(self) -> Array: ...  # (K, 3), m/s
 
 class Hydrostatics:
     @property
-    def status(self) -> Union[IntArray, Status]: ...
+    def status(self) -> Union[IntArray, Status]: ...  # (K,)
     @property
     def volume(self) -> Union[Array, float]: ...  # (K,), m^3
     @property
@@ -108,7 +108,7 @@ class Hydrostatics:
     @property
     def metacentric_heights(self) -> Array: ...  # (K, 2), m
     @property
-    def stiffness(self) -> Array: ...  # (K, 6, 6)
+    def stiffness(self) -> Array: ...  # (K, 6, 6), N, N m per m, rad
     def __len__(self) -> int: ...
 
 class Sea:
@@ -370,7 +370,7 @@ class RecordedWrenches:
     @property
     def body_id(self) -> IntArray: ...
     @property
-    def status(self) -> IntArray: ...
+    def status(self) -> IntArray: ...  # (N,)
     @property
     def force(self) -> Array: ...  # (N, 3), N
     @property
