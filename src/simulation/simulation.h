@@ -40,7 +40,7 @@ struct EnergyStats {
   double min = 0.0;
   double max = 0.0;
   double max_kinetic = 0.0;
-  // What gravity, waves and current can give to the body in the scene's scale, see docs/simulator.md.
+  // What gravity, waves and current can give to the body in the scene's scale, see docs/runs.md.
   double available = 0.0;
 };
 
