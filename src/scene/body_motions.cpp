@@ -8,13 +8,11 @@
 #include <numbers>
 #include <utility>
 
-#include "base/format.h"
 #include "hydrodynamics/small_motions.h"
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/displacement_moments.h"
 #include "scene/body_key.h"
 #include "scene/floating_bodies.h"
-#include "scene/loaded_mass.h"
 #include "scene/start_pose.h"
 
 namespace buoyancy {
@@ -289,47 +287,10 @@ BodyKey key_of(const Body& body, const BodyKeys& keys, const BodyMass& own) {
   return key;
 }
 
-std::string subject_of(const Body& body) {
-  return "body " + std::to_string(body.id) + " (" + body.name + ")";
-}
-
 }  // namespace
 
 double NaturalMotion::period() const {
   return frequency > 0.0 ? 2.0 * std::numbers::pi / frequency : kInfinity;
-}
-
-Expected<BodyMass> mass_of_body(const Body& body, const Water& water) {
-  const DynamicsSpec& spec = body.dynamics;
-  const MassProperties& enclosed = body.prepared_mesh->mass_properties;
-  if (body.prepared_mesh->mesh.is_open()) {
-    std::string missing;
-    for (const auto& [key, given] : {std::pair{"mass", spec.mass.has_value()},
-                                     {"center_of_mass", spec.center_of_mass_B.has_value()},
-                                     {"inertia", spec.inertia_B.has_value()}}) {
-      if (!given) missing += (missing.empty() ? "" : ", ") + std::string(key);
-    }
-    if (!missing.empty()) {
-      return make_error({subject_of(body), "an open mesh without " + missing,
-                         "mass, center_of_mass and inertia in [body.client]",
-                         "a simulation needs them, and an open mesh encloses no volume to derive them from",
-                         "Set what is missing, or close the mesh"});
-    }
-  }
-  const double density = spec.density.value_or(0.5 * water.density);
-  BodyMass result;
-  result.mass = spec.mass.value_or(density * enclosed.volume);
-  result.center_of_mass_B = spec.center_of_mass_B.value_or(enclosed.centroid_B);
-  result.inertia_B =
-      spec.inertia_B ? *spec.inertia_B : Mat3(enclosed.inertia_B * (result.mass / enclosed.volume));
-  if (!(result.mass > 0.0) || !std::isfinite(result.mass) || !result.inertia_B.allFinite()) {
-    return make_error({subject_of(body), "mass = " + format_number(result.mass, 6) + " kg",
-                       "a mass above 0, and with its inertia in double's range",
-                       "a density of " + format_number(density, 6) + " kg/m^3 times an enclosed volume of " +
-                           format_number(enclosed.volume, 6) + " m^3",
-                       "Set mass or density in [body.client]"});
-  }
-  return result;
 }
 
 std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh& mesh, const Water& water,

@@ -11,7 +11,7 @@
 #include "geometry/rotation_between.h"
 #include "hydrodynamics/symmetric_eigenvalues.h"
 #include "hydrostatics/hydrostatics.h"
-#include "scene/loaded_mass.h"
+#include "scene/body_mass.h"
 #include "simulation/hydrodynamic_motion.h"
 
 namespace buoyancy {

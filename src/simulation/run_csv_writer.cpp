@@ -1,13 +1,12 @@
 #include "simulation/run_csv_writer.h"
 
 #include <array>
-#include <cerrno>
 #include <charconv>
-#include <system_error>
 
 namespace buoyancy {
 namespace {
 
+constexpr std::chrono::milliseconds kFlushInterval{500};
 constexpr std::string_view kHeader =
     "utime,body_id,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz,energy\n";
 
@@ -50,11 +49,12 @@ void append_row(std::string& rows, std::int64_t utime, const SimulatedBody& body
 }  // namespace
 
 Expected<RunCsvWriter> RunCsvWriter::create(const std::filesystem::path& path, std::int64_t every) {
-  RunCsvWriter csv(path, every, std::fopen(path.c_str(), "w"));
-  if (!csv.file_) return csv.write_error();
-  if (std::fwrite(kHeader.data(), 1, kHeader.size(), csv.file_.get()) != kHeader.size()) {
-    return csv.write_error();
-  }
+  Expected<RecordWriter> file = RecordWriter::create(path);
+  if (!file) return make_error(file.error());
+  RunCsvWriter csv(every, std::move(*file));
+  Expected<void> written = csv.file_.append(kHeader);
+  if (written) written = csv.flush();
+  if (!written) return make_error(written.error());
   return csv;
 }
 
@@ -62,18 +62,13 @@ Expected<void> RunCsvWriter::write(const Simulation& simulation) {
   if (simulation.step_number() % every_ != 0) return {};
   rows_.clear();
   for (const SimulatedBody& body : simulation.bodies()) append_row(rows_, simulation.utime(), body);
-  if (std::fwrite(rows_.data(), 1, rows_.size(), file_.get()) != rows_.size()) return write_error();
-  return {};
+  if (Expected<void> appended = file_.append(rows_); !appended) return appended;
+  return Clock::now() < flush_at_ ? Expected<void>{} : flush();
 }
 
-Expected<void> RunCsvWriter::close() {
-  if (std::fclose(file_.release()) != 0) return write_error();
-  return {};
-}
-
-tl::unexpected<Error> RunCsvWriter::write_error() const {
-  return make_error({path_.string(), std::generic_category().message(errno), "a file that can be written",
-                     "a missing directory, missing permission or a full disk", ""});
+Expected<void> RunCsvWriter::flush() {
+  flush_at_ = Clock::now() + kFlushInterval;
+  return file_.flush();
 }
 
 }  // namespace buoyancy
