@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,6 +10,7 @@
 #include "geometry/rotation_between.h"
 #include "hydrodynamics/linear_algebra.h"
 #include "hydrostatics/hydrostatics.h"
+#include "hydrostatics/lowest_vertex.h"
 #include "scene/loaded_mass.h"
 #include "simulation/hydrodynamic_motion.h"
 
@@ -113,22 +113,14 @@ std::vector<Vec3> directions_B(const RigidBody& rigid) {
 }
 
 struct Extent {
-  double min = std::numeric_limits<double>::infinity();   // [m]
-  double max = -std::numeric_limits<double>::infinity();  // [m]
+  double min = 0.0;  // [m]
+  double max = 0.0;  // [m]
 };
 
 // Extent of the mesh along a direction, relative to the centre of mass.
 Extent extent_along(const HydrostaticMesh& mesh, const RigidBody& rigid, const Vec3& up_B) {
   const double offset = up_B.dot(mesh.center_B - rigid.center_of_mass_B);
-  Extent extent;
-  for (const Triangle& triangle : mesh.surface.triangles) {
-    for (const std::int32_t i : triangle) {
-      const double height = up_B.dot(mesh.vertex(i)) + offset;
-      extent.min = std::min(extent.min, height);
-      extent.max = std::max(extent.max, height);
-    }
-  }
-  return extent;
+  return {offset + lowest_vertex(*mesh.tree, up_B), offset - lowest_vertex(*mesh.tree, -up_B)};
 }
 
 }  // namespace
