@@ -162,9 +162,6 @@ class LoadedBody {
 
   // About the centre of mass. q_WB: unit.
   std::optional<FloatingPose> afloat(const Eigen::Quaterniond& q_WB, const Water& water) const {
-    if (compartments_.empty()) {
-      return find_floating_pose(*mesh_, q_WB, total_.mass / water.density, water, total_.center_of_mass_B);
-    }
     std::vector<PlacedMesh> meshes = compartments_;
     meshes.insert(meshes.begin(), {.mesh = mesh_});
     const Expected<FloatingBody> floating = FloatingBody::make(meshes, total_.mass, total_.center_of_mass_B);
@@ -172,13 +169,13 @@ class LoadedBody {
   }
 
   State floating_state(const FloatingPose& floating, const Water& water) const {
-    double volume = floating.hydrostatics.volume;
+    double volume = floating.state.hydrostatics.volume;
     if (!compartments_.empty()) {
       volume = buoyancy(Solver(*mesh_, Method::kHierarchical), floating.pose, water, Vec3::Zero()).volume;
     }
     return {.volume_fraction = mesh_->is_open() ? 1.0 : std::min(1.0, volume / mesh_->volume),
-            .area_fraction = std::min(1.0, floating.hydrostatics.wetted_area / mesh_->area),
-            .stiffness_W = floating.hydrostatics.stiffness + of_weights(floating.pose.q_WB, water)};
+            .area_fraction = std::min(1.0, floating.state.hydrostatics.wetted_area / mesh_->area),
+            .stiffness_W = floating.state.hydrostatics.stiffness + of_weights(floating.pose.q_WB, water)};
   }
 
   State submerged_state(const Displaced& displaced, const Eigen::Quaterniond& q_WB,
@@ -317,7 +314,7 @@ std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh&
       motions.balance = VerticalBalance::kFloats;
       motions.draft = floating->draft;
       const Vec3 lever_W =
-          floating->hydrostatics.center_of_buoyancy_W - matrices.R_WB() * rigid.center_of_mass_B;
+          floating->state.hydrostatics.center_of_buoyancy_W - matrices.R_WB() * rigid.center_of_mass_B;
       motions.turning_lever = (lever_W - water.up_W.dot(lever_W) * water.up_W).norm();
       const State state = loaded.floating_state(*floating, water);
       motions.natural = natural_motions(matrices, state, mesh, rigid.center_of_mass_B, water);
