@@ -4,9 +4,8 @@
 #include <span>
 
 #include "engine/pose_request_adapter.h"
+#include "messages/body_csv.h"
 #include "recording/event_log.h"
-#include "service/replay/loads_csv.h"
-#include "service/replay/wrench_csv.h"
 
 namespace buoyancy::service {
 namespace {
@@ -53,7 +52,7 @@ void OutputRecords::add_response(std::int64_t timestamp, const ResponseBytes& pu
   [[maybe_unused]] const auto rejected = decode(response, response_);
   assert(!rejected);  // the handler encoded it
   for (const BodyWrench& wrench : response_.bodies) {
-    format_wrench_row(response_.id.utime, wrench, row_);
+    set_csv_row(response_.id.utime, wrench, row_);
     append(row_);
   }
 }
@@ -63,7 +62,7 @@ void LoadsRecords::add(Bytes loads) {
   [[maybe_unused]] const auto rejected = decode(loads, loads_);
   assert(!rejected);  // the handler encoded it
   for (const BodyLoads& body : loads_.bodies) {
-    format_loads_row(loads_.id.utime, body, row_);
+    set_csv_row(loads_.id.utime, body, row_);
     append(row_);
   }
 }
@@ -72,7 +71,7 @@ Expected<ReplayOutput> ReplayOutput::create(const std::filesystem::path& path, F
   Expected<RecordWriter> file = RecordWriter::create(path);
   if (!file) return tl::unexpected(file.error());
   ReplayOutput output(std::move(*file), format, false);
-  if (const Expected<void> written = output.write_csv_header(kWrenchCsvHeader); !written) {
+  if (const Expected<void> written = output.write_csv_header(csv_header<BodyWrench>()); !written) {
     return tl::unexpected(written.error());
   }
   return output;
@@ -84,7 +83,7 @@ Expected<ReplayOutput> ReplayOutput::create_part(const StagedFile& staged, FileF
   if (!file) return tl::unexpected(file.error());
   ReplayOutput output(std::move(*file), format, true);
   if (part.number > 1) return output;
-  if (const Expected<void> written = output.write_csv_header(kWrenchCsvHeader); !written) {
+  if (const Expected<void> written = output.write_csv_header(csv_header<BodyWrench>()); !written) {
     return tl::unexpected(written.error());
   }
   return output;
@@ -94,14 +93,15 @@ Expected<ReplayOutput> ReplayOutput::create_loads(const std::filesystem::path& p
   Expected<RecordWriter> file = RecordWriter::create(path);
   if (!file) return tl::unexpected(file.error());
   ReplayOutput output(std::move(*file), FileFormat::kCsv, false);
-  if (const Expected<void> written = output.write_csv_header(loads_csv_header()); !written) {
+  if (const Expected<void> written = output.write_csv_header(csv_header<BodyLoads>()); !written) {
     return tl::unexpected(written.error());
   }
   return output;
 }
 
-Expected<void> ReplayOutput::write_csv_header(std::string_view header) {
+Expected<void> ReplayOutput::write_csv_header(std::string_view columns) {
   if (format_ != FileFormat::kCsv) return {};
+  const std::string header = std::string(columns) + "\n";
   if (is_part_) count(bytes_of(header));
   return file_.append(bytes_of(header));
 }

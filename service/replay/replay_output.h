@@ -105,7 +105,7 @@ class ReplayOutput {
  private:
   ReplayOutput(RecordWriter file, FileFormat format, bool is_part)
       : file_(std::move(file)), format_(format), is_part_(is_part) {}
-  Expected<void> write_csv_header(std::string_view header);
+  Expected<void> write_csv_header(std::string_view columns);
   void count(Bytes bytes);
 
   RecordWriter file_;

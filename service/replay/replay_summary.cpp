@@ -16,6 +16,28 @@ double per_second(std::int64_t count, double seconds) {
   return seconds > 0.0 ? static_cast<double>(count) / seconds : 0.0;
 }
 
+// Visits what JSON stores of a summary, with its JSON pointer.
+template <typename Summary, typename Visitor>
+void visit_members(Summary& summary, const Visitor& visitor) {
+  auto& counters = summary.counters;
+  visitor("/requests", counters.requests);
+  visitor("/computed", counters.computed);
+  visitor("/retries", counters.retries);
+  visitor("/rejected/truncated", counters.rejected_truncated);
+  visitor("/rejected/fingerprint", counters.rejected_fingerprint);
+  visitor("/rejected/count", counters.rejected_count);
+  visitor("/rejected/length", counters.rejected_length);
+  for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
+    visitor(std::string("/bodies/") + to_string(static_cast<BodyStatus>(i)), counters.bodies[i]);
+  }
+  visitor("/conditions_received", counters.conditions_received);
+  visitor("/conditions_rejected", counters.conditions_rejected);
+  visitor("/velocities_in_doubt", summary.doubts);
+  visitor("/copied", summary.copied);
+  visitor("/corrupt_sections", summary.corrupt_sections);
+  visitor("/seconds", summary.seconds);
+}
+
 std::string comparison_text(const ReplayComparison& comparison) {
   std::string text =
       fmt::format("{:>8}{:>12}{:>14}{:>14}{:>14}{:>14}{:>18}{:>18}{:>18}{:>16}{:>18}\n", "body", "responses",
@@ -121,51 +143,19 @@ std::string summary_text(const ReplaySummary& summary, const ReplayComparison* c
 }
 
 nlohmann::ordered_json summary_to_json(const ReplaySummary& summary) {
-  const ServiceCounters& counters = summary.counters;
-  nlohmann::ordered_json bodies;
-  for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
-    bodies[to_string(static_cast<BodyStatus>(i))] = counters.bodies[i];
-  }
-  return {{"complete", summary.complete()},
-          {"stopped_by", summary.stopped_by},
-          {"requests", counters.requests},
-          {"computed", counters.computed},
-          {"retries", counters.retries},
-          {"rejected",
-           {{"truncated", counters.rejected_truncated},
-            {"fingerprint", counters.rejected_fingerprint},
-            {"count", counters.rejected_count},
-            {"length", counters.rejected_length}}},
-          {"bodies", bodies},
-          {"conditions_received", counters.conditions_received},
-          {"conditions_rejected", counters.conditions_rejected},
-          {"velocities_in_doubt", summary.doubts},
-          {"copied", summary.copied},
-          {"corrupt_sections", summary.corrupt_sections},
-          {"seconds", summary.seconds},
-          {"requests_per_second", per_second(counters.requests, summary.seconds)}};
+  nlohmann::ordered_json json{{"complete", summary.complete()}, {"stopped_by", summary.stopped_by}};
+  visit_members(summary, [&json](const std::string& pointer, const auto& member) {
+    json[nlohmann::ordered_json::json_pointer(pointer)] = member;
+  });
+  json["requests_per_second"] = per_second(summary.counters.requests, summary.seconds);
+  return json;
 }
 
 ReplaySummary summary_from_json(const nlohmann::ordered_json& json) {
   ReplaySummary summary;
-  ServiceCounters& counters = summary.counters;
-  json.at("requests").get_to(counters.requests);
-  json.at("computed").get_to(counters.computed);
-  json.at("retries").get_to(counters.retries);
-  const nlohmann::ordered_json& rejected = json.at("rejected");
-  rejected.at("truncated").get_to(counters.rejected_truncated);
-  rejected.at("fingerprint").get_to(counters.rejected_fingerprint);
-  rejected.at("count").get_to(counters.rejected_count);
-  rejected.at("length").get_to(counters.rejected_length);
-  for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
-    json.at("bodies").at(to_string(static_cast<BodyStatus>(i))).get_to(counters.bodies[i]);
-  }
-  json.at("conditions_received").get_to(counters.conditions_received);
-  json.at("conditions_rejected").get_to(counters.conditions_rejected);
-  json.at("velocities_in_doubt").get_to(summary.doubts);
-  json.at("copied").get_to(summary.copied);
-  json.at("corrupt_sections").get_to(summary.corrupt_sections);
-  json.at("seconds").get_to(summary.seconds);
+  visit_members(summary, [&json](const std::string& pointer, auto& member) {
+    json.at(nlohmann::ordered_json::json_pointer(pointer)).get_to(member);
+  });
   return summary;
 }
 

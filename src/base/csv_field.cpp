@@ -11,6 +11,18 @@ std::string_view trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
 }
 
+std::optional<std::string_view> CsvFields::next() {
+  if (!rest_) return std::nullopt;
+  const std::size_t comma = rest_->find(',');
+  const std::string_view field = trim(rest_->substr(0, comma));
+  if (comma == std::string_view::npos) {
+    rest_.reset();
+  } else {
+    rest_->remove_prefix(comma + 1);
+  }
+  return field;
+}
+
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
   while (true) {

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -14,6 +15,16 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // that some
 
 // Removes spaces, tabs and carriage returns at both ends.
 std::string_view trim(std::string_view text);
+
+// The fields of a line, trimmed, one after another: at least one.
+class CsvFields {
+ public:
+  explicit CsvFields(std::string_view line) : rest_(line) {}
+  std::optional<std::string_view> next();  // nullopt: there are no more
+
+ private:
+  std::optional<std::string_view> rest_;
+};
 
 // The parts between separators, trimmed: at least one.
 std::vector<std::string_view> split(std::string_view text, char separator);

@@ -44,8 +44,8 @@ tl::expected<std::string_view, DecodeError> consume_string(Bytes& bytes) {
 }
 
 struct AddCounter {
-  void operator()(const char* /*name*/, std::int64_t& total, std::int64_t value) const { total += value; }
-  void operator()(const char* /*name*/, double& largest, double value) const {
+  void operator()(const Field& /*field*/, std::int64_t& total, std::int64_t value) const { total += value; }
+  void operator()(const Field& /*field*/, double& largest, double value) const {
     largest = std::max(largest, value);
   }
 };

@@ -312,11 +312,12 @@ py::dict status(py::handle self, double timeout) {
   if (PyErr_Occurred() != nullptr) throw py::error_already_set();  // of a signal
   if (!newest) throw ServiceException(newest.error());
   py::dict values;
-  visit_named_fields(**newest, [&values](const char* name, const auto& field) {
-    if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(field)>>) {
-      values[name] = static_cast<std::int32_t>(field);
+  visit_named_fields(**newest, [&values](const Field& field, const auto& value) {
+    const py::str name(field.name);
+    if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(value)>>) {
+      values[name] = static_cast<std::int32_t>(value);
     } else {
-      values[name] = field;
+      values[name] = value;
     }
   });
   return values;

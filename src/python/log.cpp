@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -13,6 +14,7 @@
 #include <pybind11/stl.h>
 
 #include "base/csv_field.h"
+#include "messages/body_csv.h"
 #include "messages/wire.h"
 #include "messages/wire_views.h"
 #include "python/call_arguments.h"
@@ -24,9 +26,6 @@
 
 namespace buoyancy::python {
 namespace {
-
-constexpr std::string_view kWrenchHeader =
-    "utime,body_id,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz,force_error_bound,torque_error_bound";
 
 // A column per field, a row per body of every message.
 struct Columns {
@@ -126,28 +125,25 @@ void read_event_log(const std::string& path, const std::string& states_channel,
   if (const std::optional<Error>& error = reader.file().read_error()) throw InputException(*error);
 }
 
-// Splits at commas and parses the columns of kWrenchHeader; false for another number of fields or a field
-// that is no number.
+// False for another number of fields than the header has, or a field that is no number.
 bool parse_wrench_row(std::string_view line, std::int64_t& utime, BodyWrench& wrench) {
-  std::size_t begin = 0;
-  const auto read = [&](auto& number, bool last = false) {
-    const std::size_t end = line.find(',', begin);
-    if ((end == std::string_view::npos) != last) return false;
-    const std::string_view field = trim(line.substr(begin, end - begin));
-    begin = end + 1;
-    return parse_number(field, number);
+  CsvFields fields(line);
+  bool good = true;
+  const auto read = [&fields, &good](auto& number) {
+    const std::optional<std::string_view> field = fields.next();
+    good = good && field && parse_number(*field, number);
   };
-  const auto read_all = [&read](std::array<double, 3>& values) {
-    return read(values[0]) && read(values[1]) && read(values[2]);
-  };
-  std::int32_t status = 0;
-  if (!(read(utime) && read(wrench.body_id) && read(status) && read_all(wrench.force) &&
-        read_all(wrench.torque) && read(wrench.submerged_volume) && read_all(wrench.center_of_buoyancy) &&
-        read(wrench.force_error_bound) && read(wrench.torque_error_bound, true))) {
-    return false;
-  }
-  wrench.status = static_cast<BodyStatus>(status);
-  return true;
+  read(utime);
+  visit_numbers(wrench, kAllFields, [&read]<typename Number>(Number& number) {
+    if constexpr (std::is_enum_v<Number>) {
+      std::int32_t value = 0;
+      read(value);
+      number = static_cast<Number>(value);
+    } else {
+      read(number);
+    }
+  });
+  return good && !fields.next();
 }
 
 void read_wrench_csv(std::ifstream& file, Log& log) {
@@ -171,7 +167,7 @@ void read_csv(const std::string& path, Log& log) {
   if (std::getline(file, header)) {
     std::string_view text = header;
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-    if (trim(text) == kWrenchHeader) return read_wrench_csv(file, log);
+    if (trim(text) == csv_header<BodyWrench>()) return read_wrench_csv(file, log);
   }
   StateCsvReader reader = value_or_throw(StateCsvReader::open(path));
   read_items(reader, log,

@@ -1,10 +1,13 @@
 #include "python/wrenches.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
+#include <utility>
 
 #include <pybind11/stl.h>
 
+#include "messages/wire_layout.h"
 #include "python/call_arguments.h"
 #include "python/slices.h"
 
@@ -91,63 +94,54 @@ std::string describe(py::handle self) {
   return text + ">";
 }
 
-template <typename MemberOf>
-void add_load(py::class_<LoadsView>& type, const char* name, MemberOf member, const char* doc) {
-  type.def_property_readonly(
-      name,
-      [member](py::handle self) {
-        auto& view = instance_of<LoadsView>(self);
-        return record_field(view.loads, view.single, view.result, member);
-      },
-      doc);
+// "(K, 3), N: about the body's reference point."
+template <typename Member>
+std::string doc_of(const Field& field) {
+  std::vector<Py_ssize_t> shape;
+  MemberShape<Member>::append(shape);
+  std::string doc = shape.empty() ? "(K," : "(K";
+  for (const Py_ssize_t size : shape) doc += ", " + std::to_string(size);
+  doc += ")";
+  if (!field.unit.empty()) (doc += ", ") += field.unit;
+  if (!field.note.empty()) (doc += ": ") += field.note;
+  return doc + ".";
 }
 
-template <typename MemberOf>
-void add_hydrostatic(py::class_<HydrostaticsTable>& type, const char* name, MemberOf member,
-                     const char* doc) {
-  type.def_property_readonly(
-      name,
-      [member](py::handle self) {
-        auto& table = instance_of<HydrostaticsTable>(self);
-        return record_field(std::span(table.rows), table.single, self, member);
-      },
-      doc);
+// Adds a property for each field of the records but id and status. records_of: returns the records of a View,
+// as a span, and the object that keeps them alive.
+template <typename Record, typename View, typename RecordsOf>
+void add_fields(py::class_<View>& type, RecordsOf records_of) {
+  Record first;
+  visit_named_fields(first, [&]<typename Member>(const Field& field, Member& member) {
+    if (field.name == "body_id" || field.name == "status") return;
+    const std::ptrdiff_t offset =
+        reinterpret_cast<std::byte*>(&member) - reinterpret_cast<std::byte*>(&first);
+    const auto get = [=](py::handle self) {
+      const auto [records, owner] = records_of(self);
+      const bool single = instance_of<View>(self).single;
+      return record_field(records, single, owner, [offset](Record& record) -> Member& {
+        return *reinterpret_cast<Member*>(reinterpret_cast<std::byte*>(&record) + offset);
+      });
+    };
+    const std::string name(field.name == "submerged_volume" ? "volume" : field.name);
+    type.def_property_readonly(name.c_str(), get, doc_of<Member>(field).c_str());
+  });
 }
 
 void define_loads(py::module_& module) {
-  using Loads = BodyLoads&;
   py::class_<LoadsView> type(
       module, "Loads",
       "Buoyancy, drag and added mass apart: result.loads of a body with outputs = [\"wrench\", "
       "\"loads\"].\n\nArrays are views of the result, (K, ...), or (...) of one pose. Torques are "
       "about the body's reference\npoint, all in the world frame. The fields are those of "
       "body_loads_t (docs/messages.md).");
-  add_load(
-      type, "immersion", [](Loads l) -> auto& { return l.immersion; }, "(K,): 0 to 1.");
-  add_load(
-      type, "buoyancy_force", [](Loads l) -> auto& { return l.buoyancy_force; }, "(K, 3), N.");
-  add_load(
-      type, "buoyancy_torque", [](Loads l) -> auto& { return l.buoyancy_torque; }, "(K, 3), N m.");
-  add_load(
-      type, "drag_force", [](Loads l) -> auto& { return l.drag_force; }, "(K, 3), N.");
-  add_load(
-      type, "drag_torque", [](Loads l) -> auto& { return l.drag_torque; }, "(K, 3), N m.");
-  add_load(
-      type, "added_mass_force", [](Loads l) -> auto& { return l.added_mass_force; }, "(K, 3), N.");
-  add_load(
-      type, "added_mass_torque", [](Loads l) -> auto& { return l.added_mass_torque; }, "(K, 3), N m.");
-  add_load(
-      type, "added_mass", [](Loads l) -> auto& { return l.added_mass; },
-      "(K, 6, 6): kg, kg m and kg m^2, for the mass matrix of a simulator.");
-  add_load(
-      type, "damping", [](Loads l) -> auto& { return l.damping; },
-      "(K, 6, 6): rows N and N m, columns m/s and rad/s.");
-  add_load(
-      type, "water_velocity", [](Loads l) -> auto& { return l.water_velocity; }, "(K, 3), m/s.");
+  add_fields<BodyLoads>(type, [](py::handle self) {
+    auto& view = instance_of<LoadsView>(self);
+    return std::pair<std::span<BodyLoads>, py::handle>(view.loads, view.result);
+  });
 }
 
 void define_hydrostatics(py::module_& module) {
-  using Row = BodyHydrostatics&;
   py::class_<HydrostaticsTable> type(
       module, "Hydrostatics",
       "Waterplane, metacentres and stiffness of each pose, in water at rest.\n\nArrays have the shape (K, "
@@ -160,38 +154,15 @@ void define_hydrostatics(py::module_& module) {
       [](py::handle self) -> py::object {
         auto& table = instance_of<HydrostaticsTable>(self);
         if (table.single) return status_object(table.rows.front().status);
-        return record_field(
-            std::span(table.rows), false, self, [](Row r) -> auto& { return r.status; });
+        return record_field(std::span(table.rows), false, self,
+                            [](BodyHydrostatics& row) -> BodyStatus& { return row.status; });
       },
       "(K,) int32: see Status; rows that are not OK hold zeros.");
   type.def("__len__", [](py::handle self) { return instance_of<HydrostaticsTable>(self).rows.size(); });
-  add_hydrostatic(
-      type, "volume", [](Row r) -> auto& { return r.submerged_volume; }, "(K,), m^3: displaced.");
-  add_hydrostatic(
-      type, "center_of_buoyancy", [](Row r) -> auto& { return r.center_of_buoyancy; }, "(K, 3), m.");
-  add_hydrostatic(
-      type, "wetted_area", [](Row r) -> auto& { return r.wetted_area; }, "(K,), m^2.");
-  add_hydrostatic(
-      type, "waterplane_area", [](Row r) -> auto& { return r.waterplane_area; }, "(K,), m^2.");
-  add_hydrostatic(
-      type, "waterplane_centroid", [](Row r) -> auto& { return r.waterplane_centroid; }, "(K, 3), m.");
-  add_hydrostatic(
-      type, "waterplane_second_moments", [](Row r) -> auto& { return r.waterplane_second_moments; },
-      "(K, 2), m^4: about the principal axes through the centroid, the smaller first.");
-  add_hydrostatic(
-      type, "waterplane_axes", [](Row r) -> auto& { return r.waterplane_axes; },
-      "(K, 2, 3): those axes, unit vectors.");
-  add_hydrostatic(
-      type, "metacentric_radii", [](Row r) -> auto& { return r.metacentric_radii; },
-      "(K, 2), m: BM of a heel about those axes.");
-  add_hydrostatic(
-      type, "metacenters", [](Row r) -> auto& { return r.metacenters; }, "(K, 2, 3), m.");
-  add_hydrostatic(
-      type, "metacentric_heights", [](Row r) -> auto& { return r.metacentric_heights; },
-      "(K, 2), m: GM; NaN without a centre of mass.");
-  add_hydrostatic(
-      type, "stiffness", [](Row r) -> auto& { return r.stiffness; },
-      "(K, 6, 6): rows N and N m, columns m and rad.");
+  add_fields<BodyHydrostatics>(type, [](py::handle self) {
+    return std::pair<std::span<BodyHydrostatics>, py::handle>(instance_of<HydrostaticsTable>(self).rows,
+                                                              self);
+  });
 }
 
 }  // namespace

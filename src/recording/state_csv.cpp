@@ -1,16 +1,17 @@
 #include "recording/state_csv.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
+#include <type_traits>
 
 #include "base/csv_field.h"
+#include "messages/body_csv.h"
 
 namespace buoyancy {
 namespace {
 
-constexpr std::string_view kPoseHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz";
-constexpr std::string_view kTwistHeader = "utime,body_id,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz";
+constexpr FieldRange kPoseFields{"body_id", "quaternion_wxyz"};
+constexpr FieldRange kTwistFields{"linear_velocity", "angular_velocity"};
 constexpr std::size_t kPoseColumns = 9;
 constexpr std::size_t kTwistColumns = 15;
 constexpr std::size_t kMaxLineLength = 4096;
@@ -35,10 +36,12 @@ Expected<std::size_t> StateCsvReader::parse_header(std::string_view text, const 
   for (const char c : text) {
     if (c != ' ' && c != '\t' && c != '\r') names += c;
   }
-  if (names == kPoseHeader) return kPoseColumns;
-  if (names == kTwistHeader) return kTwistColumns;
+  const std::string pose = csv_header<BodyState>(kPoseFields);
+  const std::string twist = "," + csv_columns<BodyState>(kTwistFields);
+  if (names == pose) return kPoseColumns;
+  if (names == pose + twist) return kTwistColumns;
   return make_error({path.string() + ":1", "header " + quote(text),
-                     "'" + std::string(kPoseHeader) + "', optionally followed by ',vx,vy,vz,wx,wy,wz'",
+                     "'" + pose + "', optionally followed by '" + twist + "'",
                      "the file has no header, or its columns are in another order", ""});
 }
 
@@ -154,36 +157,25 @@ tl::expected<StateCsvReader::Row, std::string> StateCsvReader::parse_row(std::st
   if (line_too_long_) return tl::unexpected("more than " + std::to_string(kMaxLineLength) + " characters");
   Row row;
   row.start = line_start_;
-  std::array<double, kTwistColumns - 2> numbers{};
+  CsvFields fields(text);
   std::size_t column = 0;
-  for (std::string_view rest = text;; ++column) {
-    const std::size_t comma = rest.find(',');
-    const std::string_view field = trim(rest.substr(0, comma));
-    bool good = true;
-    if (column == 0) {
-      good = parse_number(field, row.utime);
-    } else if (column == 1) {
-      good = parse_number(field, row.state.body_id);
-    } else if (column < columns_) {
-      good = parse_number(field, numbers[column - 2]);
-    }
-    if (!good) {
-      return tl::unexpected(quote(field) + " in column " + std::to_string(column + 1) + " is not " +
-                            (column < 2 ? "a whole number" : "a number") + " in range");
-    }
-    if (comma == rest.npos) break;
-    rest.remove_prefix(comma + 1);
-  }
-  if (column + 1 != columns_) {
-    return tl::unexpected(std::to_string(column + 1) + " columns where the header has " +
+  std::string error;
+  const auto read = [&]<typename Number>(Number& number) {
+    if (column == columns_ || !error.empty()) return;
+    const std::optional<std::string_view> field = fields.next();
+    if (!field) return;
+    ++column;
+    if (parse_number(*field, number)) return;
+    error = quote(*field) + " in column " + std::to_string(column) + " is not " +
+            (std::is_integral_v<Number> ? "a whole number" : "a number") + " in range";
+  };
+  read(row.utime);
+  visit_numbers(row.state, kAllFields, read);
+  if (!error.empty()) return tl::unexpected(error);
+  while (fields.next()) ++column;
+  if (column != columns_) {
+    return tl::unexpected(std::to_string(column) + " columns where the header has " +
                           std::to_string(columns_));
-  }
-  const double* number = numbers.data();
-  for (auto* field : {row.state.position.data(), row.state.quaternion_wxyz.data(),
-                      row.state.linear_velocity.data(), row.state.angular_velocity.data()}) {
-    const std::ptrdiff_t count = field == row.state.quaternion_wxyz.data() ? 4 : 3;
-    std::copy(number, number + count, field);
-    number += count;
   }
   return row;
 }

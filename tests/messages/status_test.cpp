@@ -250,11 +250,11 @@ TEST(ServiceCounters, SumsRejectionsOverCauses) {
 TEST(ServiceCounters, AddsTotalsAndTakesTheLargest) {
   ServiceCounters one;
   LayoutSize visited;
-  visit_counters([&visited](const char* /*name*/, auto& counter) { visited(counter); }, one);
+  visit_counters([&visited](const Field& /*field*/, auto& counter) { visited(counter); }, one);
   EXPECT_EQ(visited.size(), sizeof(ServiceCounters));
   ServiceCounters sum;
   std::int64_t number = 0;
-  const auto number_them = [&number](const char* /*name*/, auto& first, auto& second) {
+  const auto number_them = [&number](const Field& /*field*/, auto& first, auto& second) {
     first = static_cast<std::decay_t<decltype(first)>>(++number);
     second = 100 * first;
   };
@@ -265,10 +265,10 @@ TEST(ServiceCounters, AddsTotalsAndTakesTheLargest) {
   EXPECT_EQ(sum.largest_dropped_force, force);
   EXPECT_EQ(sum.largest_dropped_torque, one.largest_dropped_torque);
   number = 0;
-  const auto expect_added = [&number](const char* name, const auto& added) {
+  const auto expect_added = [&number](const Field& field, const auto& added) {
     ++number;
     if constexpr (std::is_same_v<std::decay_t<decltype(added)>, std::int64_t>) {
-      EXPECT_EQ(added, 101 * number) << name;
+      EXPECT_EQ(added, 101 * number) << field.name;
     }
   };
   visit_counters(expect_added, sum);

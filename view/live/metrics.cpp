@@ -16,10 +16,6 @@ namespace {
 constexpr std::array<std::string_view, 6> kGauges{"mode",         "simd_target", "threads",
                                                   "scene_bodies", "sessions",    "retained_bytes"};
 
-bool is_time(std::string_view name) {
-  return name == "uptime" || name == "queue_wait" || name.starts_with("latency_");
-}
-
 std::string escaped(std::string_view label) {
   std::string text;
   for (const char c : label) {
@@ -45,17 +41,17 @@ std::string metrics_text(const ServiceStatus* status) {
                  "\",injected_faults=\"" + escaped(status->injected_faults) + "\",instance_id=\"" +
                  std::to_string(status->instance_id) + "\",scene_fingerprint=\"" +
                  std::to_string(status->scene_fingerprint) + "\"}");
-  visit_named_trailer(*status, [&text]<typename Field>(std::string_view name, const Field& field) {
-    if (name == "scene_fingerprint") return;
-    std::string metric = "buoyancy_" + std::string(name);
-    if constexpr (std::is_floating_point_v<Field>) {
-      if (is_time(name)) metric += "_seconds";
-      add_metric(text, metric, "gauge", format_shortest(field));
+  visit_named_trailer(*status, [&text]<typename Value>(const Field& field, const Value& value) {
+    if (field.name == "scene_fingerprint") return;
+    std::string metric = "buoyancy_" + std::string(field.name);
+    if constexpr (std::is_floating_point_v<Value>) {
+      if (field.unit == "s") metric += "_seconds";
+      add_metric(text, metric, "gauge", format_shortest(value));
     } else {
-      const bool is_gauge = std::ranges::find(kGauges, name) != kGauges.end();
+      const bool is_gauge = std::ranges::find(kGauges, field.name) != kGauges.end();
       if (!is_gauge) metric += "_total";
       add_metric(text, metric, is_gauge ? "gauge" : "counter",
-                 std::to_string(static_cast<std::int64_t>(field)));
+                 std::to_string(static_cast<std::int64_t>(value)));
     }
   });
   return text;

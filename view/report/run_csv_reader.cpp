@@ -2,18 +2,23 @@
 
 #include <array>
 #include <fstream>
-#include <initializer_list>
 #include <limits>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 
 #include "base/csv_field.h"
+#include "messages/body_csv.h"
 
 namespace buoyancy::view {
 namespace {
 
 constexpr std::int64_t kRowsBetweenProgress = 4'096;
 constexpr std::size_t kMaxLine = 65'536;  // [bytes]
+
+constexpr FieldRange kPoseFields{"position", "quaternion_wxyz"};
+constexpr FieldRange kTwistFields{"linear_velocity", "angular_velocity"};
+constexpr FieldRange kWrenchFields{"status", "center_of_buoyancy"};
 
 enum class LineEnd { kNewline, kTooLong, kNone };
 
@@ -55,15 +60,16 @@ class Header {
  public:
   explicit Header(std::string_view line) : names_(split_fields(line)) {}
 
-  // The positions of a group of columns; empty if the group is incomplete.
-  std::vector<std::size_t> positions(std::initializer_list<std::string_view> group) const {
+  // The positions of a group of columns such as "utime,body_id"; empty if the group is incomplete.
+  std::vector<std::size_t> positions(std::string_view group) const {
+    const std::vector<std::string_view> wanted = split_fields(group);
     std::vector<std::size_t> found;
-    for (const std::string_view name : group) {
+    for (const std::string_view name : wanted) {
       for (std::size_t i = 0; i < names_.size(); ++i) {
         if (names_[i] == name) found.push_back(i);
       }
     }
-    if (found.size() != group.size()) found.clear();
+    if (found.size() != wanted.size()) found.clear();
     return found;
   }
   std::size_t size() const { return names_.size(); }
@@ -86,41 +92,38 @@ bool read(const std::vector<std::string_view>& fields, const std::vector<std::si
   return true;
 }
 
-template <std::size_t kSize>
-std::array<double, kSize> array_from(const double* numbers) {
-  std::array<double, kSize> values{};
-  std::copy_n(numbers, kSize, values.begin());
-  return values;
+// Reads the fields of a range, which stay as they are where there are no columns.
+template <typename Body>
+bool read(const std::vector<std::string_view>& fields, const std::vector<std::size_t>& positions,
+          const FieldRange& range, Body& body) {
+  if (positions.empty()) return true;
+  auto position = positions.begin();
+  bool good = true;
+  visit_numbers(body, range, [&]<typename Number>(Number& number) {
+    double value = 0.0;
+    good = good && parse_number(fields[*position++], value);
+    if constexpr (!std::is_same_v<Number, double>) good = good && is_int32(value);
+    if (good) number = static_cast<Number>(value);
+  });
+  return good;
 }
 
 bool read_row(const std::vector<std::string_view>& fields, const ColumnPositions& positions,
               RecordedState& row) {
   std::array<std::int64_t, 2> key{};
-  std::array<double, 7> pose{};
-  std::array<double, 6> velocities{};
-  std::array<double, 11> wrench{};
   double energy = 0.0;
-  if (!read(fields, positions.key, key.data()) || !read(fields, positions.pose, pose.data()) ||
-      !read(fields, positions.velocities, velocities.data()) ||
-      !read(fields, positions.wrench, wrench.data()) || !read(fields, positions.energy, &energy)) {
+  BodyWrench wrench;
+  if (!read(fields, positions.key, key.data()) || !read(fields, positions.pose, kPoseFields, row.state) ||
+      !read(fields, positions.velocities, kTwistFields, row.state) ||
+      !read(fields, positions.wrench, kWrenchFields, wrench) || !read(fields, positions.energy, &energy) ||
+      !is_int32(key[1])) {
     return false;
   }
-  if (!is_int32(key[1]) || !is_int32(wrench[0])) return false;
   row.utime = key[0];
-  row.state = {.body_id = static_cast<std::int32_t>(key[1]),
-               .position = array_from<3>(pose.data()),
-               .quaternion_wxyz = array_from<4>(pose.data() + 3),
-               .linear_velocity = array_from<3>(velocities.data()),
-               .angular_velocity = array_from<3>(velocities.data() + 3)};
+  row.state.body_id = static_cast<std::int32_t>(key[1]);
+  wrench.body_id = row.state.body_id;
   row.velocities = !positions.velocities.empty();
-  if (!positions.wrench.empty()) {
-    row.wrench = {.body_id = row.state.body_id,
-                  .status = static_cast<BodyStatus>(static_cast<std::int32_t>(wrench[0])),
-                  .force = array_from<3>(wrench.data() + 1),
-                  .torque = array_from<3>(wrench.data() + 4),
-                  .submerged_volume = wrench[7],
-                  .center_of_buoyancy = array_from<3>(wrench.data() + 8)};
-  }
+  if (!positions.wrench.empty()) row.wrench = wrench;
   if (!positions.energy.empty()) row.energy = energy;
   return true;
 }
@@ -140,10 +143,9 @@ Expected<void> read_run_csv(const std::filesystem::path& path, const RunFileOpti
   const std::string header_line(line);
   const Header header(header_line);
   const ColumnPositions positions{
-      header.positions({"utime", "body_id"}), header.positions({"px", "py", "pz", "qw", "qx", "qy", "qz"}),
-      header.positions({"vx", "vy", "vz", "wx", "wy", "wz"}),
-      header.positions({"status", "fx", "fy", "fz", "tx", "ty", "tz", "volume", "bx", "by", "bz"}),
-      header.positions({"energy"})};
+      header.positions("utime,body_id"), header.positions(csv_columns<BodyState>(kPoseFields)),
+      header.positions(csv_columns<BodyState>(kTwistFields)),
+      header.positions(csv_columns<BodyWrench>(kWrenchFields)), header.positions("energy")};
   if (positions.key.empty() || positions.pose.empty()) {
     return make_error(
         {path.string(), "first line '" + header_line.substr(0, 120) + "'",

@@ -1,0 +1,128 @@
+// Bodies of messages as columns of CSV files: the fields in the order of the message definition, with
+// matrices row by row after all others. Numbers have 17 significant digits, so that reading them back gives
+// the same double. A status is its number in the message, 0 for OK.
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "messages/wire_layout.h"
+
+namespace buoyancy {
+
+// Fields that follow one another in a message, by their names in its definition.
+struct FieldRange {
+  std::string_view first, last;
+};
+inline constexpr FieldRange kAllFields{"body_id", ""};
+
+template <typename Member>
+inline constexpr bool kIsMatrix = false;
+template <typename Number, std::size_t kRows, std::size_t kColumns>
+inline constexpr bool kIsMatrix<std::array<std::array<Number, kColumns>, kRows>> = true;
+
+// Calls visitor(field, member) for the fields of a range in the order of the columns.
+template <BodyOfMessage Body, typename Visitor>
+void visit_columns(Body& body, const FieldRange& range, Visitor&& visitor) {
+  const auto visit_if = [&]<bool kMatrices>(std::bool_constant<kMatrices> /*matrices*/) {
+    bool is_inside = false;
+    visit_named_fields(body, [&]<typename Member>(const Field& field, Member& member) {
+      is_inside = is_inside || field.name == range.first;
+      if constexpr (kIsMatrix<std::remove_const_t<Member>> == kMatrices) {
+        if (is_inside) visitor(field, member);
+      }
+      is_inside = is_inside && field.name != range.last;
+    });
+  };
+  visit_if(std::false_type{});
+  visit_if(std::true_type{});
+}
+
+template <typename Number, typename Visitor>
+void visit_numbers_of(Number& number, const Visitor& visitor) {
+  visitor(number);
+}
+template <typename Element, std::size_t kSize, typename Visitor>
+void visit_numbers_of(std::array<Element, kSize>& elements, const Visitor& visitor) {
+  for (Element& element : elements) visit_numbers_of(element, visitor);
+}
+template <typename Element, std::size_t kSize, typename Visitor>
+void visit_numbers_of(const std::array<Element, kSize>& elements, const Visitor& visitor) {
+  for (const Element& element : elements) visit_numbers_of(element, visitor);
+}
+
+// Calls visitor(number) for each column of a range: a double, an std::int32_t or a BodyStatus.
+template <BodyOfMessage Body, typename Visitor>
+void visit_numbers(Body& body, const FieldRange& range, const Visitor& visitor) {
+  visit_columns(body, range,
+                [&visitor](const Field& /*field*/, auto& member) { visit_numbers_of(member, visitor); });
+}
+
+// The names of the columns, such as "body_id,status,fx".
+template <BodyOfMessage Body>
+std::string csv_columns(const FieldRange& range = kAllFields) {
+  std::string columns;
+  const Body body;
+  visit_columns(body, range, [&columns]<typename Member>(const Field& field, const Member& member) {
+    const auto add = [&columns](std::string_view name) {
+      if (!columns.empty()) columns += ',';
+      columns += name;
+    };
+    if constexpr (kIsMatrix<Member>) {
+      for (std::size_t row = 1; row <= member.size(); ++row) {
+        for (std::size_t column = 1; column <= member.front().size(); ++column) {
+          add(field.name);
+          ((columns += '_') += std::to_string(row)) += std::to_string(column);
+        }
+      }
+    } else {
+      add(field.csv.empty() ? field.name : field.csv);
+    }
+  });
+  return columns;
+}
+
+// The header of a file of bodies without its newline: utime [us] and the columns.
+template <BodyOfMessage Body>
+std::string csv_header(const FieldRange& range = kAllFields) {
+  return "utime," + csv_columns<Body>(range);
+}
+
+// Appends a comma and the number.
+inline void append_csv(double value, std::string& row) {
+  constexpr int kSignificantDigits = 17;
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general,
+                                 kSignificantDigits);
+  row += ',';
+  row.append(text.data(), end.ptr);
+}
+inline void append_csv(std::int32_t value, std::string& row) {
+  row += ',';
+  row += std::to_string(value);
+}
+inline void append_csv(BodyStatus status, std::string& row) {
+  append_csv(static_cast<std::int32_t>(status), row);
+}
+
+// Appends a comma and the number for each column. No heap allocation once the capacity of row suffices.
+template <BodyOfMessage Body>
+void append_csv(const Body& body, std::string& row, const FieldRange& range = kAllFields) {
+  visit_numbers(body, range, [&row](const auto& number) { append_csv(number, row); });
+}
+
+// Replaces row by the line of a body below csv_header(), including its newline.
+template <BodyOfMessage Body>
+void set_csv_row(std::int64_t utime, const Body& body, std::string& row) {
+  row = std::to_string(utime);
+  append_csv(body, row);
+  row += '\n';
+}
+
+}  // namespace buoyancy
