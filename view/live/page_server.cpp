@@ -81,7 +81,8 @@ struct Connection {
     }
   }
 
-  // False: the peer has gone or does not read; the response cannot be continued.
+  // Waits for the write time-out at most. False: the peer has gone or does not read; the response cannot be
+  // continued.
   bool write(std::string_view bytes) {
     has_written = true;
     const ssize_t sent = ::send(socket.value(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -100,7 +101,7 @@ struct Connection {
 
   UniqueFd socket;
   bool has_written = false;
-  // These are of Connections.
+  // Kept by Connections, under its lock.
   Phase phase = Phase::kHeader;
   bool stopping = false;
   std::jthread thread;
