@@ -122,7 +122,7 @@ def details(summary, inner):
 
 
 def picture(figure, caption):
-    return f'<figure><div class="scroll">{figure.svg()}</div>\n<figcaption>{caption}</figcaption></figure>'
+    return f'<figure><div class="scroll" tabindex="0">{figure.svg()}</div>\n<figcaption>{caption}</figcaption></figure>'
 
 
 def time_section(part):
