@@ -4,7 +4,7 @@
 //
 //   large_scenes [--quick]
 //
-// Must run in a network namespace with a multicast route (scripts/measure_round_trip). The service's response
+// Must run in a network namespace with a multicast route (scripts/measure round_trip). The service's response
 // is compared with that of a handler in this process, bit for bit, before anything is timed. Exit codes: 0
 // measured; 1 a wrong response or no network; 2 invalid arguments. A missed goal is printed and does not
 // change the exit code: times depend on the machine and its load.

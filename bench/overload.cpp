@@ -5,7 +5,7 @@
 //   overload [--quick]
 //
 // The age of a response is the time from sending its request to its arrival. Must run in a network namespace
-// with a multicast route (scripts/measure_round_trip). Exit codes: same as round_trip.
+// with a multicast route (scripts/measure round_trip). Exit codes: same as round_trip.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Time of queries by arrays of poses in C++, beside which scripts/measure_python sets those from Python.
+// Time of queries by arrays of poses in C++, beside which scripts/measure python sets those from Python.
 //
 //   query_speed DIRECTORY
 //

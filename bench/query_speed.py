@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Times of queries from Python beside those in C++, as a Markdown table. scripts/measure_python runs it.
+"""Times of queries from Python beside those in C++, as a Markdown table. scripts/measure python runs it.
 
     bench/query_speed.py QUERY_SPEED DIRECTORY
 
@@ -71,7 +71,7 @@ def main():
     quaternion = random.normal(size=(POSES, 4))
     quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
     np.hstack([position, quaternion]).tofile(folder / "poses.f64")
-    print(f"`./scripts/measure_python`, medians of {ROUNDS} interleaved runs, {POSES:,} poses of a torus; processor time on one "
+    print(f"`./scripts/measure python`, medians of {ROUNDS} interleaved runs, {POSES:,} poses of a torus; processor time on one "
           "thread, wall-clock time on all.\n")
     print("| triangles | one pose per call: C++, Python | more | 10,000 poses on one thread: C++, Python | ratio | on all "
           "threads: C++, Python |")

@@ -4,7 +4,7 @@
 //
 //   view_overhead [--quick]
 //
-// Must run in a network namespace with a multicast route (scripts/measure_view). Exit codes: 0 measured; 1 a
+// Must run in a network namespace with a multicast route (scripts/measure view). Exit codes: 0 measured; 1 a
 // wrong response or no network; 2 invalid arguments. A missed goal is printed and does not change the exit
 // code: times depend on the machine and its load.
 #include <algorithm>

@@ -2,21 +2,18 @@
 // buoyancy service or from the same request handler in this process. Exit codes: 0 the run is complete, 1 it
 // failed or was interrupted, 2 invalid arguments, scene or mesh.
 
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
+#include <csignal>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include <CLI/CLI.hpp>
-#include <signal.h>
 
 #include "cli/channel_options.h"
 #include "cli/command_line.h"
 #include "cli/progress_bar.h"
+#include "cli/termination_signals.h"
 #include "client/client.h"
 #include "scene/mesh_warnings.h"
 #include "scene/scene_fingerprint.h"
@@ -31,13 +28,8 @@ namespace {
 constexpr double kMaxSteps = 1e15;  // integers up to this value are exact as doubles
 constexpr std::int64_t kMaxCount = std::int64_t{1} << 40U;
 constexpr std::int64_t kMaxDelaySteps = 10000;  // bounds the number of responses that are kept
-
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "written by a signal handler");
-
-void request_stop(int /*signal*/) {
-  stop_requested.store(true);
-}
+// Between two looks at the signals: a look is a system call, which a step of a small body would notice.
+constexpr std::chrono::milliseconds kSignalInterval{10};
 
 struct Arguments {
   std::string scene;
@@ -124,11 +116,6 @@ Expected<void> check_arguments(const Arguments& arguments, double steps) {
   return check_lcm_url(channel.lcm_url);
 }
 
-int report(const Error& error, int exit_code) {
-  std::fprintf(stderr, "buoyancy-client: %s\n", error.message().c_str());
-  return exit_code;
-}
-
 // bodies: number of bodies of a request. Sets warning if their responses may be lost.
 Expected<SimulationClient> make_client(const Arguments& arguments, const Scene& scene, std::size_t bodies,
                                        std::optional<Warning>& warning) {
@@ -145,8 +132,11 @@ Expected<SimulationClient> make_client(const Arguments& arguments, const Scene& 
       FreeRunningClient(std::move(*channel), arguments.retry_policy, 1.0 / *arguments.rate));
 }
 
-int simulate(Arguments arguments) {
-  arguments.channel.cancelled = &stop_requested;
+int simulate(const CLI::App& app, Arguments arguments) {
+  const auto fail = [&app](const Error& error, ExitCode exit_code) {
+    print_error(app, error);
+    return exit_code;
+  };
   arguments.channel.spin = !arguments.no_spin;
   SimulationOptions options;
   options.step = arguments.step.value_or(arguments.rate ? 1.0 / *arguments.rate : options.step);
@@ -156,37 +146,50 @@ int simulate(Arguments arguments) {
   options.session_id = arguments.session.value_or(make_session_id());
   const double steps_requested = std::round(arguments.duration / options.step);
   if (const Expected<void> checked = check_arguments(arguments, steps_requested); !checked) {
-    return report(checked.error(), kUsageError);
+    return fail(checked.error(), kUsageError);
   }
   const auto steps = static_cast<std::int64_t>(steps_requested);
 
   const Expected<Scene> scene = Scene::load(arguments.scene);
-  if (!scene) return report(scene.error(), kUsageError);
+  if (!scene) return fail(scene.error(), kUsageError);
   if (arguments.embedded && scene->receives_sea()) {
-    return report(
+    return fail(
         {"--embedded", "a scene with waves = \"received\"", "a scene that describes its waves",
          "nothing is received without a network", "Run buoyancyd, or describe the waves in the scene"},
         kUsageError);
   }
   Expected<Simulation> simulation = Simulation::make(*scene, options);
-  if (!simulation) return report(simulation.error(), kUsageError);
+  if (!simulation) return fail(simulation.error(), kUsageError);
   std::optional<RunCsvWriter> csv;
   if (!arguments.csv.empty()) {
     const Expected<void> distinct = check_output_not_input(arguments.csv, {arguments.scene});
-    if (!distinct) return report(distinct.error(), kUsageError);
+    if (!distinct) return fail(distinct.error(), kUsageError);
     Expected<RunCsvWriter> created = RunCsvWriter::create(arguments.csv, arguments.csv_every);
-    if (!created) return report(created.error(), kFailure);
+    if (!created) return fail(created.error(), kFailure);
     csv = std::move(*created);
   }
+  TerminationSignals signals;
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe becomes a write error with a message
+  if (csv) csv->give_up_after(signals.fileno());
+  bool stopped = false;
+  Clock::time_point look_at;
+  const auto is_stopped = [&] {
+    if (const Clock::time_point now = Clock::now(); now >= look_at) {
+      stopped = signals.pending();
+      look_at = now + kSignalInterval;
+    }
+    return stopped;
+  };
+  arguments.channel.is_interrupted = is_stopped;
   std::optional<Warning> size_warning;
   Expected<SimulationClient> client =
       make_client(arguments, *scene, simulation->bodies().size(), size_warning);
-  if (!client) return report(client.error(), kFailure);
+  if (!client) return fail(client.error(), kFailure);
 
   RunSummary summary;
-  const auto warn = [&summary](std::optional<Warning> warning) {
+  const auto warn = [&](std::optional<Warning> warning) {
     if (!warning) return;
-    std::fprintf(stderr, "buoyancy-client: warning: %s\n", warning->message().c_str());
+    print_warning(app, *warning);
     summary.warnings.push_back(std::move(*warning));
   };
   for (Warning& warning : mesh_warnings(*scene)) warn(std::move(warning));
@@ -202,7 +205,7 @@ int simulate(Arguments arguments) {
   Expected<RunOutcome> outcome = RunOutcome::kCompleted;
   {
     ProgressBar progress("steps");
-    outcome = run(*simulation, *client, steps, stop_requested, [&](const Simulation& now) -> Expected<void> {
+    outcome = run(*simulation, *client, steps, is_stopped, [&](const Simulation& now) -> Expected<void> {
       progress.update(now.step_number(), steps, now.step_number());
       if (arguments.rate) {
         if (std::optional<Warning> warning = latency.update(now)) {
@@ -224,9 +227,10 @@ int simulate(Arguments arguments) {
     });
   }
   const double wall_time = std::chrono::duration<double>(Clock::now() - start).count();
-  const Expected<void> closed = csv ? csv->close() : Expected<void>{};
-  if (!outcome) return report(outcome.error(), kFailure);
-  if (!closed) return report(closed.error(), kFailure);
+  const Expected<void> flushed = csv ? csv->flush() : Expected<void>{};
+  signals.unblock();  // writing the summary may block on its reader
+  if (!outcome) return fail(outcome.error(), kFailure);
+  if (!flushed) return fail(flushed.error(), kFailure);
 
   warn(energy_warning(*simulation));
   summary.steps = simulation->completed_steps();
@@ -239,32 +243,11 @@ int simulate(Arguments arguments) {
     summary.bodies.push_back(summarize(body, simulation->water()));
   }
   summary.client = statistics(*client);
-  const std::string text = arguments.json ? to_json(summary) : to_text(summary);
-  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
-    return report({"standard output", "cannot be written", "a writable output for the summary", "", ""},
-                  kFailure);
-  }
+  if (!print_output(app, arguments.json ? to_json(summary) : to_text(summary))) return kFailure;
   return summary.interrupted ? kFailure : kSuccess;
 }
 
-// Replaces the former name of --delay-steps, which still works but is not documented.
-std::vector<std::string> with_current_names(int argc, char** argv) {
-  constexpr std::string_view kFormer = "--late";
-  std::vector<std::string> arguments(argv, argv + argc);
-  for (std::string& argument : arguments) {
-    if (argument == kFormer || argument.starts_with("--late=")) {
-      argument.replace(0, kFormer.size(), "--delay-steps");
-    }
-  }
-  return arguments;
-}
-
 int client_main(int argc, char** argv) {
-  struct sigaction action {};
-  action.sa_handler = request_stop;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-
   CLI::App app("Simulate the bodies of a scene that have a [body.client], with wrenches from buoyancyd.\n" +
                    exit_status_help(
                        {.success = "if the run is complete",
@@ -273,12 +256,8 @@ int client_main(int argc, char** argv) {
                "buoyancy-client");
   Arguments arguments;
   add_options(app, arguments);
-  const std::vector<std::string> given = with_current_names(argc, argv);
-  std::vector<const char*> values;
-  values.reserve(given.size());
-  for (const std::string& argument : given) values.push_back(argument.c_str());
-  if (const auto exit_code = parse_command_line(app, argc, values.data())) return *exit_code;
-  return simulate(std::move(arguments));
+  if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
+  return simulate(app, std::move(arguments));
 }
 
 }  // namespace

@@ -198,8 +198,7 @@ Expected<void> write_file(const std::filesystem::path& path, const std::string& 
   if (!staged) return make_error(staged.error());
   Expected<RecordWriter> file = RecordWriter::create(*staged);
   if (!file) return make_error(file.error());
-  const Bytes bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  if (Expected<void> written = file->append(bytes); !written) return written;
+  if (Expected<void> written = file->append(text); !written) return written;
   if (Expected<void> flushed = file->flush(); !flushed) return flushed;
   return staged->commit();
 }

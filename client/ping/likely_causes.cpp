@@ -8,6 +8,7 @@
 
 #include "base/format.h"
 #include "hydrostatics/buoyancy.h"
+#include "hydrostatics/level_search.h"
 #include "messages/conversions.h"
 
 namespace buoyancy::ping {
@@ -165,20 +166,23 @@ bool is_inclined(const Scene& scene, const DifferingWrench& sample) {
 
 // [m]. The level at which the body displaces the volume that was received.
 double level_of(const Scene& scene, const DifferingWrench& sample) {
-  constexpr int kBisections = 60;
+  constexpr int kMaxRounds = 60;
   const ValidatedPose validated = validate_pose(sample.state, 0.0);
   Water water = scene.water();
-  const double reach = 2.0 * sample.body->solver.mesh().diagonal;
+  const HydrostaticMesh& mesh = sample.body->solver.mesh();
+  const double reach = 2.0 * mesh.diagonal;
   // The surface cuts the body, which has a vertex within its diagonal of its box's centre.
   const Vec3 center_W = to_vec3(sample.received.center_of_buoyancy) + to_vec3(sample.state.position);
-  double low = water.up_W.dot(center_W) - reach;
-  double high = low + 2.0 * reach;
-  for (int i = 0; i < kBisections; ++i) {
-    water.level = (low + high) / 2.0;
+  water.level = water.up_W.dot(center_W);
+  LevelSearch search(water.level - reach, water.level + reach, 0.0);
+  for (int round = 0; round < kMaxRounds && !search.is_narrow(); ++round) {
     const BuoyancyResult now = buoyancy(sample.body->solver, validated.pose, water, sample.body->reference_B);
-    (now.volume < sample.received.submerged_volume ? low : high) = water.level;
+    const double excess = now.volume - sample.received.submerged_volume;
+    search.add(water.level, excess, excess);
+    if (std::abs(excess) <= mesh.volume_tolerance()) break;
+    water.level = search.next(search.is_slow(2));
   }
-  return (low + high) / 2.0;
+  return water.level;
 }
 
 // The level that would explain the volumes of all samples that tell.

@@ -1,7 +1,6 @@
 """The figures of the results page and of the docs, drawn from the rows that the measuring programs write.
 
-Each figure has a wide and a narrow form. Everything in a figure, including its text alternative, is computed from its
-rows.
+Everything in a figure, including its text alternative, is computed from its rows.
 """
 import csv
 from dataclasses import dataclass
@@ -54,6 +53,15 @@ def short_count(triangles):
     return f"{triangles / 1e3:.1f} k" if triangles < 3e3 else f"{triangles / 1e3:.0f} k"
 
 
+def largest(rows, key, column):
+    """Returns the largest absolute value of a column per key; key(row): a tuple, or None to leave the row out."""
+    found = {}
+    for row in rows:
+        if (at := key(row)) is not None:
+            found[at] = max(abs(float(row[column])), found.get(at, 0.0))
+    return found
+
+
 # --- Time against error ----------------------------------------------------------------------------------------------
 
 SPEED_ACCURACY_COLUMNS = ["mesh", "triangles", "method", "tolerance", "target", "regime", "median_ns", "force_error",
@@ -71,14 +79,31 @@ def best_rows(rows, regime):
 
 @dataclass
 class Point:
-    """Time and error of a method on a mesh."""
+    """Time and error of a method on a mesh, and the bound that was published with the result of a wave load."""
     us: float
     error: float
     triangles: int
     mesh: str
+    bound: float | None = None
 
-    def shown(self):
-        return self.us, max(self.error, SMALLEST_ERROR)
+    def shown(self, smallest=SMALLEST_ERROR):
+        return self.us, max(self.error, smallest)
+
+    def tooltip(self, style):
+        told = ("" if self.bound is None else f", bound {significant(self.bound)}" if self.bound < float("inf")
+                else ", no bound")
+        return (f"{style.label}, {self.mesh} of {grouped(self.triangles)} triangles: {microseconds(self.us * 1000)} µs, "
+                f"error {significant(self.error)}{told}")
+
+
+def point_of(row, bound=None):
+    return Point(float(row["median_ns"]) / 1000, float(row["force_error"]), int(row["triangles"]), row["mesh"], bound)
+
+
+def values_of(series, wanted):
+    """Describes the points of one mesh."""
+    return "; ".join(f"{style.label} {microseconds(p.us * 1000)} µs with an error of {significant(p.error)}"
+                     for style, points in series for p in points if wanted(p))
 
 
 def series(best, meshes):
@@ -86,16 +111,9 @@ def series(best, meshes):
     tolerances = sorted({t for (_, _, m, t) in best if m == "hierarchical" and float(t) > 0}, key=float)
     kinds = [(m, "0", METHODS[m]) for m in ("plain", *METHOD_ORDER)]
     kinds += [("hierarchical", t, tolerance_style(t, i)) for i, t in enumerate(tolerances)]
-    made = []
-    for method, tolerance, style in kinds:
-        points = []
-        for n, mesh in meshes:
-            row = best.get((mesh, n, method, tolerance))
-            if row:
-                points.append(Point(float(row["median_ns"]) / 1000, float(row["force_error"]), n, mesh))
-        if points:
-            made.append((style, points))
-    return made
+    made = [(style, [point_of(best[mesh, n, method, tolerance]) for n, mesh in meshes
+                     if (mesh, n, method, tolerance) in best]) for method, tolerance, style in kinds]
+    return [(style, points) for style, points in made if points]
 
 
 def name_beside(panel, style, points):
@@ -117,7 +135,7 @@ def name_beside(panel, style, points):
     return [text(x, y, style.label, css=style.css, anchor="middle", colour=style.colour, halo=True)]
 
 
-def reading_lines(panel, best, meshes, named):
+def reading_lines(panel, best, meshes):
     """Draws a line at the time of reading each mesh once."""
     floor = panel.top + panel.height
     for n, mesh in meshes:
@@ -125,12 +143,10 @@ def reading_lines(panel, best, meshes, named):
             continue
         at = panel.at_x(float(best[mesh, n, "read", "0"]["median_ns"]) / 1000)
         yield f'<path class="axis" d="M{at:.1f} {floor}V{panel.top}" stroke="#999999" stroke-dasharray="2 5"/>'
-        if named:
-            yield note(at - 5, panel.top + 0.6 * panel.height, f"reading {short_count(n)}", size=11, rotate=-90,
-                       halo=True)
+        yield note(at - 5, panel.top + 0.6 * panel.height, f"reading {short_count(n)}", size=11, rotate=-90, halo=True)
 
 
-def speed_accuracy(rows, wide, name="speed_accuracy", scanned=False):
+def speed_accuracy(rows, name="speed_accuracy", scanned=False):
     """scanned: plot the knot and the scanned models instead of the rocks, which are one body at increasing sizes."""
     best = best_rows(rows, "independent")
     meshes = sorted({(n, mesh) for (mesh, n, _, _) in best
@@ -141,20 +157,16 @@ def speed_accuracy(rows, wide, name="speed_accuracy", scanned=False):
     times = [point.us for _, points in drawn for point in points]
     times += [float(row["median_ns"]) / 1000 for (mesh, n, method, _), row in best.items()
               if method == "read" and (n, mesh) in meshes]
-    # Wide: space for labels on the left of the fastest points. Narrow: all labels are below the plot.
-    x = Scale(max(min(times), 0.01) / (20.0 if wide else 2.0), max(times) * 2.0, log=True, plain=True,
-              label="time of one query, µs")
-    y = Scale(1e-17, 10, log=True, every=2 if wide else 4, label="error of force, relative to the whole")
-    width, height = (1080, 700) if wide else (420, 508)
-    panel = Panel(86, 58, 964, 580, x, y) if wide else Panel(66, 58, 340, 370, x, y)
-
+    # There is space for labels on the left of the fastest points.
+    panel = Panel(86, 58, 964, 580,
+                  Scale(max(min(times), 0.01) / 20.0, max(times) * 2.0, log=True, plain=True, label="time of one query, µs"),
+                  Scale(1e-17, 10, log=True, every=2, label="error of force, relative to the whole"))
     title = ("Time and error of every method on the torus knot and scanned models" if scanned
              else "Time and error of every method on meshes of growing size")
-    each = "a point per method and mesh; " if scanned else "a line per method, a point per mesh; "
-    panel.parts += [heading(width, wide, title, "Time and error of every method"),
-                    note(width / 2, 43, f"lower left is better; {each if wide else ''}dotted: reading the mesh once",
-                         size=13 if wide else 12)]
-    panel.parts += reading_lines(panel, best, meshes, wide)
+    each = "a point per method and mesh" if scanned else "a line per method, a point per mesh"
+    panel.parts += [heading(1080, title),
+                    note(540, 43, f"lower left is better; {each}; dotted: reading the mesh once", size=13),
+                    *reading_lines(panel, best, meshes)]
     names = []
     for style, points in drawn:
         # Scanned models are different bodies, so that no line connects them.
@@ -162,26 +174,77 @@ def speed_accuracy(rows, wide, name="speed_accuracy", scanned=False):
             panel.curve([point.shown() for point in points], style)
         for point in points:
             at_x, at_y = panel.at(point.shown())
-            panel.parts.append(marker(at_x, at_y, style, f"{style.label}, {point.mesh} of {grouped(point.triangles)} "
-                                      f"triangles: {microseconds(point.us * 1000)} µs, "
-                                      f"error {significant(point.error)}"))
+            panel.parts.append(marker(at_x, at_y, style, point.tooltip(style)))
             if not scanned and style in (METHODS["hierarchical"], METHODS["improved"]):
                 names.append(note(at_x, at_y + 19, short_count(point.triangles), size=11, halo=True))
-        if wide:
-            names += name_beside(panel, style, points)
-    if not wide:
-        below, taken = legend([style for style, _ in drawn], 16, height, 390, True)
-        names += below
-        height += taken
+        names += name_beside(panel, style, points)
 
     n, mesh = meshes[-1]
-    values = [f"{style.label} {microseconds(p.us * 1000)} µs with an error of {significant(p.error)}"
-              for style, points in drawn for p in points if (p.triangles, p.mesh) == (n, mesh)]
     description = ("Median time of one query in microseconds, across, against the largest error of the force relative "
                    f"to the whole displacement, upwards, both logarithmic, for {len(meshes)} meshes of "
                    f"{grouped(meshes[0][0])} to {grouped(n)} triangles. On the {mesh} of {grouped(n)}: "
-                   + "; ".join(values) + ".")
-    return Figure(name, title, description, width, height, panel.parts + names)
+                   + values_of(drawn, lambda p: (p.triangles, p.mesh) == (n, mesh)) + ".")
+    return Figure(name, title, description, 1080, 700, panel.parts + names)
+
+
+# --- Time against error in waves -------------------------------------------------------------------------------------
+
+WAVE_COLUMNS = ["mesh", "triangles", "pressure", "components", "method", "tolerance", "median_ns", "force_error",
+                "force_bound"]
+COMPONENTS = 200
+# Errors below it are not told apart: 0 has no logarithm.
+SMALLEST_WAVE_ERROR = 1e-9
+TOLERANCES = {
+    "0.01": Style("hierarchical, tolerance 1e-2", "#cc79a7", "diamond", "m-tolerance"),
+    "0.001": Style("hierarchical, tolerance 1e-3", "#000000", "circle", "m-hierarchical"),
+    "0.0001": Style("hierarchical, tolerance 1e-4", "#d55e00", "square", "m-tolerance"),
+}
+
+
+def wave_table_rows(rows):
+    """Returns the rows of one pressure with the tables' number of components."""
+    return [r for r in rows if r["pressure"] == "wheeler" and int(r["components"]) == COMPONENTS]
+
+
+def wave_speed_accuracy(rows):
+    drawn = {}
+    for row in wave_table_rows(rows):
+        style = TOLERANCES.get(row["tolerance"]) if row["method"] == "hierarchical" else METHODS[row["method"]]
+        if style:
+            drawn.setdefault(style, []).append(point_of(row, float(row["force_bound"])))
+    if not drawn:
+        return None
+    points_of_all = [point for points in drawn.values() for point in points]
+    times = [point.us for point in points_of_all]
+    panel = Panel(86, 58, 964, 500,
+                  Scale(min(times) / 2.0, max(times) * 2.0, log=True, plain=True, label="time of one query, µs"),
+                  Scale(SMALLEST_WAVE_ERROR / 10, 1, log=True, label="error of force, relative to the whole"))
+    panel.parts += [heading(1080, f"Time and error of the load of {COMPONENTS} waves on meshes of growing size"),
+                    note(540, 43, "lower left is better; the bars above the points of hierarchical: its published bound",
+                         size=13)]
+    names = []
+    for style, points in drawn.items():
+        # The time of hierarchical hardly grows with the mesh, so that no line connects its points.
+        if style in METHODS.values():
+            panel.curve([point.shown(SMALLEST_WAVE_ERROR) for point in points], style)
+        for point in points:
+            at_x, at_y = panel.at(point.shown(SMALLEST_WAVE_ERROR))
+            if point.bound < float("inf"):
+                top = panel.at_y(point.bound)
+                panel.parts.append(f'<path class="{style.css} stroked" d="M{at_x:.1f} {at_y:.1f}V{top:.1f}M{at_x - 5:.1f} '
+                                   f'{top:.1f}h10" fill="none" stroke="{style.colour}" stroke-width="1"/>')
+            panel.parts.append(marker(at_x, at_y, style, point.tooltip(style)))
+            if style in (METHODS["exact_surface"], TOLERANCES["0.001"]):
+                names.append(note(at_x, at_y + 19, grouped(point.triangles) if point.triangles < 1000
+                                  else short_count(point.triangles), size=11, halo=True))
+    below, taken = legend(list(drawn), 86, 616, 960, True)
+    smallest, largest_mesh = (of(point.triangles for point in points_of_all) for of in (min, max))
+    description = (f"Median time of one query in microseconds, across, against the largest error of the force relative to "
+                   f"the whole displacement, upwards, both logarithmic, for {COMPONENTS} wave components on meshes of "
+                   f"{grouped(smallest)} to {grouped(largest_mesh)} triangles. On the largest: "
+                   + values_of(drawn.items(), lambda p: p.triangles == largest_mesh) + ".")
+    return Figure("wave_speed_accuracy", "Time and error of the loads of waves", description, 1080, 616 + taken + 10,
+                  panel.parts + names + below)
 
 
 # --- The paper's figure 4 --------------------------------------------------------------------------------------------
@@ -189,90 +252,66 @@ def speed_accuracy(rows, wide, name="speed_accuracy", scanned=False):
 FIGURE4_COLUMNS = ["shape", "triangles", "method", "h", "force", "closed_form", "error_of_whole"]
 
 
-def largest_figure4_errors(rows):
+def figure4_errors(rows):
     """Returns {(shape, triangles): {method: largest error}}."""
-    largest = {}
-    for row in rows:
-        of_mesh = largest.setdefault((row["shape"], int(row["triangles"])), {})
-        error = abs(float(row["error_of_whole"]))
-        of_mesh[row["method"]] = max(error, of_mesh.get(row["method"], 0.0))
-    return largest
+    errors = {}
+    for (*mesh, method), error in largest(rows, lambda r: (r["shape"], int(r["triangles"]), r["method"]),
+                                          "error_of_whole").items():
+        errors.setdefault(tuple(mesh), {})[method] = error
+    return errors
 
 
-def paper_figure4(rows, wide):
+def paper_figure4(rows):
     measured = {}
     for row in rows:
-        measured.setdefault((row["shape"], int(row["triangles"]), row["method"]), []).append(row)
-    sizes = {shape: sorted({n for (s, n, _) in measured if s == shape}) for shape in ("cube", "sphere")}
+        measured.setdefault((row["shape"], int(row["triangles"])), {}).setdefault(row["method"], []).append(row)
     closed = Style("closed form of the paper", "#c4c8cc", "circle", "m-closed", width=9.0)
-    columns = 2 if wide else 1
-    width = 1080 if wide else 420
-    panel_width = 460 if wide else 342
-    panel_height = 285 if wide else 250
-    parts = [heading(width, wide, "Buoyant force on a body lowered into the water, ρg = 1",
-                     "Force on a body lowered, ρg = 1")]
-    place = 0
-
-    def next_panel(**scales):
-        nonlocal place
-        column, row = place % columns, place // columns
-        place += 1
-        return Panel(72 + column * 540 if wide else 66, 74 + row * (panel_height + 92), panel_width, panel_height,
-                     **scales)
-
-    across = {shape: Scale(-reach, reach, every=reach / 2, label="height of the centre over the water")
-              for shape, reach in (("cube", 0.5), ("sphere", 1.0))}
-    for shape in ("cube", "sphere"):
-        coarse = sizes[shape][0]
-        curves = {m: measured[shape, coarse, m] for m in METHOD_ORDER if (shape, coarse, m) in measured}
-        forces = [float(r["force"]) for rs in curves.values() for r in rs]
-        step = 0.2 if max(forces) < 2 else 1.0
-        upwards = Scale(min(0.0, min(forces)), max(forces) * 1.03, every=step, label="force")
-        panel = next_panel(x=across[shape], y=upwards, title=f"{shape}, {grouped(coarse)} triangles")
-        any_curve = next(iter(curves.values()))
-        panel.curve([(float(r["h"]), float(r["closed_form"])) for r in any_curve], closed)
-        for method, curve in curves.items():
-            panel.curve([(float(r["h"]), float(r["force"])) for r in curve], METHODS[method])
-        parts += panel.parts
-    for shape in ("cube", "sphere"):
-        first, *others = sizes[shape]
-        subtitle = f"solid: {grouped(first)} triangles" + (f"; dashed: {grouped(others[-1])}" if others else "")
-        panel = next_panel(x=across[shape], y=Scale(1e-17, 1, log=True, every=4, label="error, relative to the whole"),
-                           title=subtitle)
-        for size in sizes[shape]:
+    tops, bottoms = [heading(1080, "Buoyant force on a body lowered into the water, ρg = 1")], []
+    for column, (shape, reach) in enumerate((("cube", 0.5), ("sphere", 1.0))):
+        first, *others = sorted(n for s, n in measured if s == shape)
+        across = Scale(-reach, reach, every=reach / 2, label="height of the centre over the water")
+        curves = measured[shape, first]
+        forces = [float(r["force"]) for curve in curves.values() for r in curve]
+        upwards = Scale(min(0.0, min(forces)), max(forces) * 1.03, every=0.2 if max(forces) < 2 else 1.0, label="force")
+        left = 72 + column * 540
+        above = Panel(left, 74, 460, 285, across, upwards, f"{shape}, {grouped(first)} triangles")
+        above.curve([(float(r["h"]), float(r["closed_form"])) for r in next(iter(curves.values()))], closed)
+        for method in METHOD_ORDER:
+            above.curve([(float(r["h"]), float(r["force"])) for r in curves.get(method, [])], METHODS[method])
+        below = Panel(left, 451, 460, 285, across, Scale(1e-17, 1, log=True, every=4, label="error, relative to the whole"),
+                      f"solid: {grouped(first)} triangles" + (f"; dashed: {grouped(others[-1])}" if others else ""))
+        for size in (first, *others):
             for method in METHOD_ORDER:
-                curve = measured.get((shape, size, method), [])
+                curve = measured[shape, size].get(method, [])
                 points = [(float(r["h"]), max(abs(float(r["error_of_whole"])), SMALLEST_ERROR)) for r in curve]
-                panel.curve(points, METHODS[method], dash="" if size == first else "5 4", width=1.6)
-        parts += panel.parts
-    bottom = 74 + (4 // columns) * (panel_height + 92) - 6
-    names, taken = legend([closed] + [METHODS[m] for m in METHOD_ORDER], 72 if wide else 16, bottom,
-                          width - (100 if wide else 30), False)
-    parts += names
-    values = []
-    for (shape, n), errors in largest_figure4_errors(rows).items():
-        values.append(f"{shape} of {grouped(n)} triangles: " + ", ".join(
-            f"{m} {significant(errors[m])}" for m in METHOD_ORDER if m in errors))
+                below.curve(points, METHODS[method], dash="" if size == first else "5 4", width=1.6)
+        tops += above.parts
+        bottoms += below.parts
+    names, taken = legend([closed] + [METHODS[m] for m in METHOD_ORDER], 72, 822, 980, False)
+    values = [f"{shape} of {grouped(n)} triangles: "
+              + ", ".join(f"{m} {significant(errors[m])}" for m in METHOD_ORDER if m in errors)
+              for (shape, n), errors in figure4_errors(rows).items()]
     return Figure("paper_figure4", "The paper's figure 4, measured: force on a cube and a sphere, and its error",
                   "Above, the force of each method and the paper's closed form over the height of the centre, for a "
                   "cube and a sphere; below, the size of the force's error, logarithmic, on a coarse and a fine mesh. "
-                  "Largest errors: " + "; ".join(values) + ".", width, bottom + taken + 6, parts)
+                  "Largest errors: " + "; ".join(values) + ".", 1080, 828 + taken, tops + bottoms + names)
 
 
 # --- Error under stress ----------------------------------------------------------------------------------------------
 
 STRESS_COLUMNS = ["sweep", "x", "method", "error_of_whole"]
-# Title, label of the horizontal axis, decades per tick.
+# Title, label of the horizontal axis, decades per tick, name in a table.
 SWEEPS = {
-    "tilt": ("tilt of a box of flat faces", "rad", 3),
-    "level": ("level and position, far up", "m", 3),
-    "origin": ("mesh far from its own origin", "m", 2),
-    "scale": ("size of the body", "m", 3),
-    "wet_share": ("submerged fraction; dotted: all of it missed", "of the whole displacement", 3),
+    "tilt": ("tilt of a box of flat faces", "rad", 3, "tilt, 1e-12 to 1 rad"),
+    "level": ("level and position, far up", "m", 3, "level and position, 1 to 1e9 m up"),
+    "origin": ("mesh far from its own origin", "m", 2, "mesh 1 to 1e7 m from its origin"),
+    "scale": ("size of the body", "m", 3, "size, 1e-6 to 1e6 m"),
+    "wet_share": ("submerged fraction; dotted: all of it missed", "of the whole displacement", 3,
+                  "submerged fraction, 1e-9 to 1"),
 }
 
 
-def error_under_stress(rows, wide):
+def error_under_stress(rows):
     sweeps = {}
     for row in rows:
         points = sweeps.setdefault(row["sweep"], {}).setdefault(row["method"], [])
@@ -280,20 +319,15 @@ def error_under_stress(rows, wide):
     unknown = set(sweeps) - set(SWEEPS)
     if unknown:
         raise Unusable(f"unknown sweep '{unknown.pop()}'; known: {', '.join(SWEEPS)}")
-    columns = 3 if wide else 1
-    width = 1180 if wide else 420
-    panel_width, panel_height = (312, 270) if wide else (336, 240)
-    parts = [heading(width, wide, "Error of the force, relative to the whole displacement",
-                     "Error of force, relative to the whole")]
+    parts = [heading(1180, "Error of the force, relative to the whole displacement")]
     methods = [m for m in METHODS if any(m in of_sweep for of_sweep in sweeps.values())]
     shown = [s for s in SWEEPS if s in sweeps]
     values = []
     for place, sweep in enumerate(shown):
-        title, across, decades = SWEEPS[sweep]
+        title, across, decades, _ = SWEEPS[sweep]
         xs = [x for points in sweeps[sweep].values() for x, _ in points]
         low, high = (1e-27, 10.0) if sweep == "wet_share" else (1e-17, 1e9)
-        column, row = place % columns, place // columns
-        panel = Panel(62 + column * 388 if wide else 66, 74 + row * (panel_height + 92), panel_width, panel_height,
+        panel = Panel(62 + place % 3 * 388, 74 + place // 3 * 362, 312, 270,
                       Scale(min(xs), max(xs), log=True, every=decades, label=across),
                       Scale(low, high, log=True, every=4), title)
         if sweep == "wet_share":
@@ -303,26 +337,30 @@ def error_under_stress(rows, wide):
             points = sorted(sweeps[sweep].get(method, []))
             panel.curve([(x, min(max(error, low * 1.2), high)) for x, error in points], METHODS[method])
         parts += panel.parts
-        largest = {METHODS[m].label: max(e for _, e in sweeps[sweep][m]) for m in methods if m in sweeps[sweep]}
-        values.append(f"{title}: " + ", ".join(f"{label} {significant(error)}" for label, error in largest.items()))
-    rows_of_panels = -(-len(shown) // columns)
-    bottom = 74 + rows_of_panels * (panel_height + 92) - 6
-    if wide and len(shown) % columns:
-        # The legend uses the free space of the last row.
-        left = 62 + (len(shown) % columns) * 388
-        names, _ = legend([METHODS[m] for m in methods], left + 20, bottom - panel_height - 40, 100, False)
-        taken = 0
-    else:
-        names, taken = legend([METHODS[m] for m in methods], 62 if wide else 16, bottom, width - 60, False)
-    parts += names
+        values.append(f"{title}: " + ", ".join(
+            f"{METHODS[m].label} {significant(max(e for _, e in sweeps[sweep][m]))}" for m in methods if m in sweeps[sweep]))
+    # The legend takes the place after the last panel.
+    left, top = 62 + len(shown) % 3 * 388, 74 + len(shown) // 3 * 362
+    names, _ = legend([METHODS[m] for m in methods], left + 20, top + 46, 100, False)
     return Figure("error_under_stress", "Error of every method over tilt, level, the mesh's origin, size and submerged "
                   "fraction",
                   "A panel per kind of stress, both axes logarithmic. Largest errors over each: "
-                  + "; ".join(values) + ".", width, bottom + taken + (0 if taken == 0 else 6), parts)
+                  + "; ".join(values) + ".", 1180, top + 356, parts + names)
 
 
+# The figures that have files of their own: what draws each, and the columns that it needs.
 DRAWN = {
     "speed_accuracy": (speed_accuracy, SPEED_ACCURACY_COLUMNS),
+    "wave_speed_accuracy": (wave_speed_accuracy, WAVE_COLUMNS),
     "paper_figure4": (paper_figure4, FIGURE4_COLUMNS),
     "error_under_stress": (error_under_stress, STRESS_COLUMNS),
 }
+
+
+def draw(kind, source, output):
+    """Draws a figure from the rows of a CSV file as SVG."""
+    drawn, columns = DRAWN[kind]
+    figure = drawn(read_rows(source, columns))
+    if figure is None:
+        raise Unusable(f"{source}: no rows that the figure shows")
+    output.write_text(figure.standalone(), encoding="utf-8")

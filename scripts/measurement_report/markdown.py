@@ -3,6 +3,8 @@ import re
 from dataclasses import dataclass
 from html import escape
 
+from figures import Unusable
+
 
 @dataclass
 class Table:
@@ -10,8 +12,39 @@ class Table:
     right: list  # per column: whether it is right-aligned
     rows: list
 
-    def column(self, name):
-        return self.header.index(name)
+    def dictionaries(self):
+        """Returns the rows by column; of several columns of one name, the first counts."""
+        return [dict(reversed(list(zip(self.header, row)))) for row in self.rows]
+
+    def cells_of(self, column):
+        return [row[column] for row in self.dictionaries()]
+
+    def row(self, **where):
+        """Returns the first row with these cells."""
+        for row in self.dictionaries():
+            if where.items() <= row.items():
+                return row
+        raise Unusable(f"no row with {where} below the header {self.header}")
+
+    def text(self):
+        marks = ["---:" if right else "---" for right in self.right]
+        lines = [f"| {' | '.join(row)} |" for row in (self.header, *self.rows)]
+        return "\n".join([lines[0], f"|{'|'.join(marks)}|", *lines[1:]])
+
+    def html(self, label):
+        """Returns the table in a box that scrolls if the page is narrower."""
+        def row(tag, row_cells):
+            made = []
+            for right, cell in zip(self.right, row_cells):
+                classes = (["right"] if right else []) + (["missed"] if "MISSED" in cell else [])
+                css = f' class="{" ".join(classes)}"' if classes else ""
+                scope = ' scope="col"' if tag == "th" else ""
+                made.append(f"<{tag}{scope}{css}>{inline(cell)}</{tag}>")
+            return f"<tr>{''.join(made)}</tr>"
+
+        body = "\n".join(row("td", r) for r in self.rows)
+        return (f'<div class="scroll" role="region" aria-label="{escape(label)}" tabindex="0"><table>\n'
+                f"<thead>{row('th', self.header)}</thead>\n<tbody>\n{body}\n</tbody></table></div>")
 
 
 def cells(row):
@@ -20,28 +53,31 @@ def cells(row):
     return [part.strip().replace("\\|", "|") for part in parts[1:-1]]
 
 
-def tables(text):
-    """Returns every table with the heading above it."""
-    found, heading, lines = [], "", text.splitlines()
-    i = 0
-    while i < len(lines):
-        if lines[i].startswith("#"):
-            heading = lines[i].lstrip("# ")
-        if lines[i].startswith("|") and i + 1 < len(lines) and re.match(r"^\|[-:| ]+\|$", lines[i + 1]):
-            start = i
-            while i < len(lines) and lines[i].startswith("|"):
-                i += 1
-            found.append((heading, parse_table(lines[start:i])))
+def parse_table(header, marks, *rows):
+    rows = [(row + [""] * len(header))[:len(header)] for row in rows]
+    return Table(header, [mark.endswith(":") for mark in marks], rows)
+
+
+def blocks(text):
+    """Yields pairs of kind ("heading", "table", "item" or "line") and content."""
+    rows = []
+    for line in [*text.splitlines(), ""]:
+        if line.startswith("|"):
+            rows.append(cells(line))
             continue
-        i += 1
-    return found
+        if len(rows) > 1:
+            yield "table", parse_table(*rows)
+        rows = []
+        if line.startswith("#"):
+            yield "heading", line.lstrip("# ")
+        elif line.startswith("- "):
+            yield "item", line[2:]
+        else:
+            yield "line", line.strip()
 
 
-def parse_table(lines):
-    header = cells(lines[0])
-    right = [mark.endswith(":") for mark in cells(lines[1])]
-    rows = [(row + [""] * len(header))[:len(header)] for row in map(cells, lines[2:])]
-    return Table(header, right, rows)
+def tables(text):
+    return [content for kind, content in blocks(text) if kind == "table"]
 
 
 def inline(text):
@@ -51,55 +87,24 @@ def inline(text):
     return re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", text)
 
 
-def table_html(table, label):
-    """Returns the table in a box that scrolls if the page is narrower."""
-    def row(tag, row_cells):
-        made = []
-        for right, cell in zip(table.right, row_cells):
-            classes = (["right"] if right else []) + (["missed"] if "MISSED" in cell else [])
-            css = f' class="{" ".join(classes)}"' if classes else ""
-            scope = ' scope="col"' if tag == "th" else ""
-            made.append(f"<{tag}{scope}{css}>{inline(cell)}</{tag}>")
-        return f"<tr>{''.join(made)}</tr>"
-
-    body = "\n".join(row("td", r) for r in table.rows)
-    return (f'<div class="scroll" role="region" aria-label="{escape(label)}" tabindex="0"><table>\n'
-            f"<thead>{row('th', table.header)}</thead>\n<tbody>\n{body}\n</tbody></table></div>")
-
-
 def html(text, level):
     """level: the level of all headings."""
     made, paragraph, items, heading = [], [], [], "table"
-    lines = text.splitlines()
-
-    def flush():
+    for kind, content in blocks(text):
+        if kind == "item":
+            items.append(f"<li>{inline(content)}</li>")
+            continue
+        if kind == "line" and content:
+            paragraph.append(content)
+            continue
         if paragraph:
             made.append(f"<p>{inline(' '.join(paragraph))}</p>")
-            paragraph.clear()
         if items:
-            made.append("<ul>" + "".join(f"<li>{inline(item)}</li>" for item in items) + "</ul>")
-            items.clear()
-
-    i = 0
-    while i < len(lines):
-        line = lines[i]
-        if line.startswith("|"):
-            flush()
-            start = i
-            while i < len(lines) and lines[i].startswith("|"):
-                i += 1
-            made.append(table_html(parse_table(lines[start:i]), heading))
-            continue
-        if line.startswith("#"):
-            flush()
-            heading = line.lstrip("# ")
+            made.append(f"<ul>{''.join(items)}</ul>")
+        paragraph, items = [], []
+        if kind == "table":
+            made.append(content.html(heading))
+        elif kind == "heading":
+            heading = content
             made.append(f"<h{level}>{inline(heading)}</h{level}>")
-        elif line.startswith("- "):
-            items.append(line[2:])
-        elif line.strip() == "":
-            flush()
-        else:
-            paragraph.append(line.strip())
-        i += 1
-    flush()
     return "\n".join(made)

@@ -75,9 +75,8 @@ def note(x, y, content, *, anchor="middle", size=12, halo=False, rotate=None):
     return text(x, y, content, css="soft", anchor=anchor, size=size, halo=halo, rotate=rotate, colour=SOFT)
 
 
-def heading(width, wide, title, short_title):
-    shown = escape(title if wide else short_title)
-    return text(width / 2, 24, shown, anchor="middle", size=17 if wide else 15, weight="600")
+def heading(width, title):
+    return text(width / 2, 24, escape(title), anchor="middle", size=17, weight="600")
 
 
 def grid_line(path):
@@ -207,21 +206,16 @@ class Figure:
     height: float
     parts: list
 
-    def _svg(self, attributes, suffix, ground):
-        ids = f"{self.name}{suffix}"
+    def svg(self, attributes="", ground=()):
+        """Returns the figure as a part of a page."""
         return "\n".join([
             f'<svg {attributes}viewBox="0 0 {self.width:g} {self.height:g}" role="img" '
-            f'aria-labelledby="{ids}-title {ids}-desc" font-family="system-ui, \'DejaVu Sans\', sans-serif">',
-            f'<title id="{ids}-title">{escape(self.title)}</title>',
-            f'<desc id="{ids}-desc">{escape(self.description)}</desc>', *ground, *self.parts, "</svg>"
+            f'aria-labelledby="{self.name}-title {self.name}-desc" font-family="system-ui, \'DejaVu Sans\', sans-serif">',
+            f'<title id="{self.name}-title">{escape(self.title)}</title>',
+            f'<desc id="{self.name}-desc">{escape(self.description)}</desc>', *ground, *self.parts, "</svg>"
         ])
 
     def standalone(self):
         """Returns the figure as a file, with a white background."""
-        return self._svg(
-            f'xmlns="http://www.w3.org/2000/svg" width="{self.width:g}" height="{self.height:g}" ', "",
-            [f'<rect width="100%" height="100%" fill="{GROUND}"/>']) + "\n"
-
-    def inline(self, css):
-        """Returns the figure as part of a page, shown under the class `css`."""
-        return self._svg(f'class="{css}" ', f"-{css}", [])
+        return self.svg(f'xmlns="http://www.w3.org/2000/svg" width="{self.width:g}" height="{self.height:g}" ',
+                        [f'<rect width="100%" height="100%" fill="{GROUND}"/>']) + "\n"

@@ -5,8 +5,7 @@
 // to reduce the phases of waves.
 // Source: T. J. Dekker, "A floating-point technique for extending the available precision", Numerische
 // Mathematik 18 (1971). Relative error of each operation: below 2^-100, as long as nothing over- or
-// underflows. The same operations on vectors are in
-// hydrostatics/water_plane.cpp.
+// underflows. The same operations on vectors are in base/simd-inl.h and hydrostatics/water_plane.cpp.
 #pragma once
 
 namespace buoyancy {

@@ -1,5 +1,5 @@
 // The C interface of buoyancy: forces and torques on floating bodies in your own process, from C and from
-// every language that calls C. Link with -lbuoyancy-c. docs/c_interface.md has a first program.
+// every language that calls C. Link with -lbuoyancy-c. docs/libraries.md has a first program.
 //
 // Conventions
 //   SI units: m, kg, s, N, Pa, rad. Right-handed axes. W is the world's frame, B that of a body: its mesh's.

@@ -99,10 +99,7 @@ void LcmRequestChannel::Inbox::complete() {
 }
 
 LcmRequestChannel::LcmRequestChannel(ChannelOptions options, LcmConnection connection)
-    : options_(std::move(options)),
-      cancelled_(options.cancelled),
-      inbox_(std::make_unique<Inbox>()),
-      connection_(std::move(connection)) {}
+    : options_(std::move(options)), inbox_(std::make_unique<Inbox>()), connection_(std::move(connection)) {}
 
 Expected<LcmRequestChannel> LcmRequestChannel::open(const ChannelOptions& options) {
   Expected<LcmConnection> connection =

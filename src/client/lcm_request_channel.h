@@ -96,7 +96,7 @@ class LcmRequestChannel {
   // What two responses to one request say, the first time that they differ; empty: they agree.
   const std::string& contradiction() const { return inbox_->contradiction; }
   bool cancelled() const {
-    return (cancelled_ != nullptr && cancelled_->load()) ||
+    return (options_.cancelled != nullptr && options_.cancelled->load()) ||
            (options_.is_interrupted && options_.is_interrupted());
   }
 
@@ -149,7 +149,6 @@ class LcmRequestChannel {
   Expected<void> publish(const std::vector<std::vector<std::uint8_t>>& conditions);  // and the last request
 
   ChannelOptions options_;
-  const std::atomic<bool>* cancelled_;
   std::unique_ptr<Inbox> inbox_;
   LcmConnection connection_;
   std::vector<std::uint8_t> request_bytes_;

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "hydrostatics/immersed_part.h"
-#include "scene/body_motions.h"
+#include "scene/body_mass.h"
 
 namespace buoyancy {
 namespace {
@@ -58,7 +58,8 @@ std::optional<Vec3> total_center_of_mass(const Body& body, const Water& water, c
   if (!body.center_of_mass_B || !(liquids.mass > 0.0)) return body.center_of_mass_B;
   const Expected<BodyMass> own = mass_of_body(body, water);
   if (!own) return std::nullopt;
-  return Vec3((own->mass * own->center_of_mass_B + liquids.moment) / (own->mass + liquids.mass));
+  const Weights weights = weights_of(*own, liquids, Vec3::Zero());
+  return Vec3(weights.moment / weights.mass);
 }
 
 double flooded_at(const Subdivision& subdivision, const BodyCondition* condition, std::size_t i) {

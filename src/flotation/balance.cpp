@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "hydrostatics/level_search.h"
+
 namespace buoyancy {
 namespace {
 
@@ -60,7 +62,7 @@ std::optional<BalancedAttitude> Balance::at(const Vec3& up_B, const BalancedAtti
   const auto sum_at = [&](double height) {
     return displaced_sum(*body_, WaterPlane{.up_B = up_B, .h_c = -height});
   };
-  HeightRange range = height_range(*body_, up_B);
+  const HeightRange range = height_range(*body_, up_B);
   if (body_->is_open()) {
     if (!(range.low < range.high)) return std::nullopt;
     if (!(sum_at(range.low).volume >= target_volume_)) return std::nullopt;
@@ -68,7 +70,6 @@ std::optional<BalancedAttitude> Balance::at(const Vec3& up_B, const BalancedAtti
     return std::nullopt;
   }
 
-  const double scale = std::max(std::abs(range.low), std::abs(range.high));
   const double tolerance = 0.125 * body_->volume_tolerance();
   // The secant method on the cube root of the volume under water, or of that over it if it is smaller: at a
   // tip the volume grows with the cube of its height.
@@ -94,22 +95,18 @@ std::optional<BalancedAttitude> Balance::at(const Vec3& up_B, const BalancedAtti
     if (expected > range.low && expected < range.high) height = expected;
     if (is_guessed) area = guess->area;
   }
-  double slope = target_root != 0.0 ? area / (3.0 * target_root * target_root) : 0.0;  // of the root, down
+  const double slope = target_root != 0.0 ? area / (3.0 * target_root * target_root) : 0.0;
+  LevelSearch search(-range.high, -range.low, slope);  // of the water over center_B
   double last_height = 0.0;
-  double last_root = 0.0;
   double last_excess = 0.0;
-  double older_excess = std::numeric_limits<double>::infinity();
   for (int round = 0;; ++round) {
     const DisplacedSum displaced = sum_at(height);
     const double excess = displaced.volume - target_volume_;
-    const double root = root_of(displaced.volume);
     if (round > 0 && height != last_height && excess != last_excess) {
       area = (last_excess - excess) / (height - last_height);
-      slope = (last_root - root) / (height - last_height);
     }
-    (excess > 0.0 ? range.low : range.high) = height;
-    const bool is_narrow = range.high - range.low <= 2.0 * kEpsilon * scale;
-    if (std::abs(excess) <= std::max(tolerance, slack) || is_narrow || round >= kMaxRounds) {
+    search.add(-height, excess, root_of(displaced.volume) - target_root);
+    if (std::abs(excess) <= std::max(tolerance, slack) || search.is_narrow() || round >= kMaxRounds) {
       BalancedAttitude attitude = balanced(up_B, height, displaced);
       attitude.area = std::max(area, 0.0);
       attitude.is_exact = std::abs(excess) <= tolerance || slack <= tolerance;
@@ -117,14 +114,9 @@ std::optional<BalancedAttitude> Balance::at(const Vec3& up_B, const BalancedAtti
       if (is_guessed) settle(attitude, area, guess->pivot);
       return attitude;
     }
-    double next = slope > 0.0 ? height + (root - target_root) / slope : range.low;
-    const bool is_slow = round >= 2 && std::abs(excess) > 0.5 * older_excess;
-    if (!(next > range.low && next < range.high) || is_slow) next = 0.5 * (range.low + range.high);
-    older_excess = round > 0 ? std::abs(last_excess) : older_excess;
     last_height = height;
-    last_root = root;
     last_excess = excess;
-    height = next;
+    height = -search.next(search.is_slow(2));
   }
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/double_double.h"
+
 namespace buoyancy {
 namespace {
 
@@ -11,33 +13,6 @@ constexpr double kUnitRoundoff = 0x1p-53;  // half an ulp of 1
 // Rounding error bounds of the determinants in double, relative to the sums of their absolute products.
 constexpr double kError2d = (3.0 + 16.0 * kUnitRoundoff) * kUnitRoundoff;
 constexpr double kError3d = (7.0 + 56.0 * kUnitRoundoff) * kUnitRoundoff;
-
-struct TwoTerms {
-  double sum;    // rounded
-  double error;  // the exact rounding error
-};
-
-TwoTerms two_sum(double a, double b) {
-  const double sum = a + b;
-  const double b_part = sum - a;
-  const double a_part = sum - b_part;
-  return {sum, (a - a_part) + (b - b_part)};
-}
-
-// Splits a into two halves of 26 bits each, so that products of halves are exact.
-TwoTerms split(double a) {
-  const double big = 0x1.0000002p27 * a;  // (2^27 + 1) a
-  const double high = big - (big - a);
-  return {high, a - high};
-}
-
-TwoTerms two_product(double a, double b) {
-  const double product = a * b;
-  const auto [a_high, a_low] = split(a);
-  const auto [b_high, b_low] = split(b);
-  const double error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
-  return {product, error};
-}
 
 // A number as the exact sum of at most kCapacity doubles, all non-zero, with non-overlapping bits, smallest
 // first. The last term therefore has the sign of the sum.

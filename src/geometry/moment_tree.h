@@ -127,6 +127,24 @@ struct MomentTree {
   Vec3 center(const std::array<std::int32_t, 3>& leaf_center) const {  // [m], relative to c
     return grid * Vec3(leaf_center[0], leaf_center[1], leaf_center[2]);
   }
+  Vec3 center_of_child(const TreeNode& node, std::uint32_t i) const {  // [m], of its bounds, relative to c
+    return unit * Vec3(node.center[0][i], node.center[1][i], node.center[2][i]);
+  }
+  Vec3 half_of_child(const TreeNode& node, std::uint32_t i) const {  // [m], half-extents of its bounds
+    return unit * Vec3(node.half[0][i], node.half[1][i], node.half[2][i]);
+  }
+  // Calls visit(child) with child i of a node, a TreeNode or a TreeLeaf: one step of a descent that does not
+  // need the SIMD kernels of hydrostatics/node_kernels-inl.h.
+  template <typename Visit>
+  void visit_child(const TreeNode& node, std::uint32_t i, const Visit& visit) const {
+    if (i < node.inner_nodes) {
+      visit(nodes[node.first_node + i]);
+    } else if (const std::uint32_t leaf = node.first_leaf + i - node.inner_nodes; leaves.empty()) {
+      visit(double_leaves[leaf]);
+    } else {
+      visit(leaves[leaf]);
+    }
+  }
   std::size_t bytes() const;
 };
 

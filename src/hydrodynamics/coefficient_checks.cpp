@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/format.h"
-#include "hydrodynamics/symmetric_eigenvalues.h"
+#include "hydrodynamics/linear_algebra.h"
 
 namespace buoyancy {
 
@@ -55,7 +55,7 @@ std::optional<CoefficientFault> find_indefinite(const Mat6& matrix) {
     }
     scaled(i, i) = matrix(i, i) > 0.0 ? 1.0 : 0.0;
   }
-  const double smallest = symmetric_eigen(scaled).values.minCoeff();
+  const double smallest = symmetric_eigen<6>(scaled, Mat6::Identity()).values[0];
   if (smallest >= -kIndefinite) return std::nullopt;
   CoefficientFault indefinite = fault;
   indefinite.cause = "the smallest eigenvalue, of the matrix scaled to a diagonal of ones, is " +

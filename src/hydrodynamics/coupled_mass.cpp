@@ -1,6 +1,6 @@
 #include "hydrodynamics/coupled_mass.h"
 
-#include "hydrodynamics/linear_solver.h"
+#include "hydrodynamics/linear_algebra.h"
 
 namespace buoyancy {
 namespace {

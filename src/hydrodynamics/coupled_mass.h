@@ -18,7 +18,7 @@
 // where D also gets the derivatives of the other velocity-dependent terms of that side. Drag then makes no
 // step too large. Weight does not act on added mass: it stays that of the body's mass alone.
 //
-// All vectors and matrices in W's axes, torques about r. Derivation and limits: docs/simulator.md.
+// All vectors and matrices in W's axes, torques about r. Derivation and limits: docs/runs.md.
 #pragma once
 
 #include "hydrodynamics/hydrodynamic_load.h"

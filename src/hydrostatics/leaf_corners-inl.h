@@ -10,14 +10,13 @@
 
 #include <hwy/highway.h>
 
+#include "base/simd-inl.h"
 #include "hydrostatics/triangle_clip.h"
 #include "hydrostatics/wetted_tree_sum.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 using Reals = hn::CappedTag<double, 8>;
 using RealVector = hn::Vec<Reals>;

@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include "base/simd-inl.h"
 #include "hydrostatics/leaf_corners-inl.h"
 #include "hydrostatics/wetted_tree_sum.h"
 
@@ -107,9 +108,7 @@ class LeafBatch {
           x, load(leaf.y[0].data() + n),
           hn::MulAdd(y, load(leaf.y[1].data() + n), hn::MulAdd(z, load(leaf.y[2].data() + n), from)));
       hn::Store(value, d, heights.values.data() + n);
-      std::array<std::uint8_t, 8> bits{};
-      hn::StoreMaskBits(d, hn::Lt(value, hn::Zero(d)), bits.data());
-      wet |= static_cast<std::uint32_t>(bits[0]) << n;
+      wet |= mask_bits(d, hn::Lt(value, hn::Zero(d))) << n;
     }
     return wet;
   }

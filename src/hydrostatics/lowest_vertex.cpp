@@ -21,12 +21,10 @@ class LowestVertexSearch {
  private:
   // The lowest children first, so that the others can be skipped.
   void visit(const TreeNode& node) {
-    const auto at = [this](const auto& by_axis, std::uint32_t i) {
-      return Vec3(tree_.unit * Vec3(by_axis[0][i], by_axis[1][i], by_axis[2][i]));
-    };
     std::array<std::pair<double, std::uint32_t>, kTreeWidth> bounds;
     for (std::uint32_t i = 0; i < node.children; ++i) {
-      const double bound = up_B_.dot(at(node.center, i)) - up_B_.cwiseAbs().dot(at(node.half, i));
+      const double bound =
+          up_B_.dot(tree_.center_of_child(node, i)) - up_B_.cwiseAbs().dot(tree_.half_of_child(node, i));
       std::size_t n = i;
       for (; n > 0 && bounds[n - 1].first > bound; --n) bounds[n] = bounds[n - 1];
       bounds[n] = {bound, i};
@@ -34,13 +32,7 @@ class LowestVertexSearch {
     for (std::size_t n = 0; n < node.children; ++n) {
       const auto [bound, i] = bounds[n];
       if (bound >= lowest_) return;
-      if (i < node.inner_nodes) {
-        visit(tree_.nodes[node.first_node + i]);
-      } else if (const std::uint32_t leaf = node.first_leaf + i - node.inner_nodes; tree_.leaves.empty()) {
-        visit(tree_.double_leaves[leaf]);
-      } else {
-        visit(tree_.leaves[leaf]);
-      }
+      tree_.visit_child(node, i, [this](const auto& child) { visit(child); });
     }
   }
 

@@ -12,6 +12,7 @@
 
 #include <hwy/highway.h>
 
+#include "base/simd-inl.h"
 #include "geometry/meshlets.h"
 #include "hydrostatics/triangle_clip.h"
 #include "hydrostatics/wetted_surface.h"
@@ -19,8 +20,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 // A group of triangles takes kParts vectors of kLanes numbers.
 using Lanes = hn::CappedTag<double, kGroupTriangles>;
@@ -36,9 +35,7 @@ HWY_INLINE LaneMask is_wet(Lane height) {
   return hn::Lt(height, hn::Zero(Lanes()));
 }
 HWY_INLINE std::uint64_t lane_bits(LaneMask mask) {
-  std::array<std::uint8_t, 8> bits{};
-  hn::StoreMaskBits(Lanes(), mask, bits.data());
-  return bits[0];
+  return mask_bits(Lanes(), mask);
 }
 
 struct LanePoint {

@@ -10,14 +10,13 @@
 
 #include <hwy/highway.h>
 
+#include "base/simd-inl.h"
 #include "hydrostatics/pruned_node.h"
 #include "hydrostatics/wetted_tree_sum.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 using Bounds = hn::CappedTag<float, kTreeWidth>;
 using Reals = hn::CappedTag<double, 8>;
@@ -95,13 +94,6 @@ HWY_INLINE ChildMasks child_masks(const TreeNode& node, std::uint32_t wet, std::
 // A bit mask of the children that are inner nodes.
 HWY_INLINE std::uint32_t inner_bits(const TreeNode& node) {
   return (1U << node.inner_nodes) - 1U;
-}
-
-template <class D>
-HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
-  std::array<std::uint8_t, 8> bits{};
-  hn::StoreMaskBits(d, mask, bits.data());
-  return bits[0];
 }
 
 // append() writes those of eight items whose bit in the mask is set, in order; append_places() writes first +

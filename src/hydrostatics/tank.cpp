@@ -1,11 +1,11 @@
 #include "hydrostatics/tank.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "hydrostatics/hierarchical.h"
 #include "hydrostatics/immersed_part.h"
+#include "hydrostatics/level_search.h"
 
 namespace buoyancy {
 namespace {
@@ -25,38 +25,29 @@ FilledTo fill_to(const Tank& tank, const Vec3& up_B, double level) {
   return filled;
 }
 
-// The volume rises with the level: false position, with bisection where that is slow.
 FilledTo find_level(const Tank& tank, const Vec3& up_B) {
   constexpr int kMaxRounds = 200;
   const HydrostaticMesh& mesh = *tank.mesh;
   const double middle = 0.5 * up_B.dot(mesh.box_min + mesh.box_max);
   const double half = 0.5 * up_B.cwiseAbs().dot(mesh.box_max - mesh.box_min);
-  double low = middle - half;
-  double high = middle + half;
-  const double scale = std::max(std::abs(low), std::abs(high));
+  const double low = middle - half;
+  const double high = middle + half;
   const double exact = 2.0 * kEpsilon * tank.liquid_volume;
   const double rounding = 4.0 * kEpsilon * mesh.volume;
 
-  FilledTo best = fill_to(tank, up_B, low + (high - low) * (tank.liquid_volume / mesh.volume));
-  FilledTo last = best;
-  double older_excess = std::numeric_limits<double>::infinity();
-  double area = tank.liquid_volume / (best.level - low);  // [m^2], of the surface, roughly
-  for (int round = 0; round < kMaxRounds; ++round) {
-    (last.excess > 0.0 ? high : low) = last.level;
-    if (std::abs(last.excess) <= exact || high - low <= 2.0 * kEpsilon * scale) break;
-    const bool is_slow = round >= 2 && std::abs(last.excess) > 0.5 * older_excess;
-    if (is_slow && std::abs(best.excess) <= rounding) break;
-    double level = area > 0.0 ? last.level - last.excess / area : high;
-    if (!(level > low && level < high) || is_slow) level = 0.5 * (low + high);
-    const FilledTo next = fill_to(tank, up_B, level);
-    if (next.level != last.level && next.excess != last.excess) {
-      area = (next.excess - last.excess) / (next.level - last.level);
-    }
-    older_excess = std::abs(last.excess);
-    last = next;
-    if (std::abs(last.excess) < std::abs(best.excess)) best = last;
+  double level = low + (high - low) * (tank.liquid_volume / mesh.volume);
+  LevelSearch search(low, high, tank.liquid_volume / (level - low));  // as if the tank were a box
+  FilledTo best;
+  for (int round = 0;; ++round) {
+    const FilledTo filled = fill_to(tank, up_B, level);
+    if (round == 0 || std::abs(filled.excess) < std::abs(best.excess)) best = filled;
+    search.add(level, filled.excess, filled.excess);
+    const bool is_slow = search.is_slow(1);
+    const bool is_found = std::abs(filled.excess) <= exact || search.is_narrow() ||
+                          (is_slow && std::abs(best.excess) <= rounding);
+    if (is_found || round == kMaxRounds) return best;
+    level = search.next(is_slow);
   }
-  return best;
 }
 
 }  // namespace

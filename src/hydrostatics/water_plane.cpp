@@ -16,6 +16,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/simd-inl.h"
+
 #ifndef BUOYANCY_WATER_PLANE_LANES
 #define BUOYANCY_WATER_PLANE_LANES
 namespace buoyancy {
@@ -39,52 +41,7 @@ namespace buoyancy {
 namespace HWY_NAMESPACE {
 namespace hydrostatics {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-// The operations of double_double.h on the lanes of a vector, which may be one. Processors with a fused
-// multiply-add find the error of a product in one instruction; it has the same bits unless it underflows.
-template <typename V>
-struct DoubleDoubles {
-  V hi, lo;
-};
-
-template <typename V>
-HWY_INLINE V all(double value) {
-  return hn::Set(hn::DFromV<V>(), value);
-}
-
-template <typename V>
-HWY_INLINE DoubleDoubles<V> two_sum(V a, V b) {
-  const V sum = hn::Add(a, b);
-  const V b_part = hn::Sub(sum, a);
-  return {sum, hn::Add(hn::Sub(a, hn::Sub(sum, b_part)), hn::Sub(b, b_part))};
-}
-
-template <typename V>
-HWY_INLINE DoubleDoubles<V> quick_two_sum(V a, V b) {
-  const V sum = hn::Add(a, b);
-  return {sum, hn::Sub(b, hn::Sub(sum, a))};
-}
-
-template <typename V>
-HWY_INLINE DoubleDoubles<V> two_product(V a, V b) {
-  const V product = hn::Mul(a, b);
-#if HWY_NATIVE_FMA
-  return {product, hn::MulSub(a, b, product)};
-#else
-  const V split = all<V>(134217729.0);  // 2^27 + 1
-  const V a_scaled = hn::Mul(split, a);
-  const V a_hi = hn::Sub(a_scaled, hn::Sub(a_scaled, a));
-  const V a_lo = hn::Sub(a, a_hi);
-  const V b_scaled = hn::Mul(split, b);
-  const V b_hi = hn::Sub(b_scaled, hn::Sub(b_scaled, b));
-  const V b_lo = hn::Sub(b, b_hi);
-  V rest = hn::Sub(hn::Mul(a_hi, b_hi), product);
-  rest = hn::Add(hn::Add(rest, hn::Mul(a_hi, b_lo)), hn::Mul(a_lo, b_hi));
-  return {product, hn::Add(rest, hn::Mul(a_lo, b_lo))};
-#endif
-}
-
+// The other operations of double_double.h.
 template <typename V>
 HWY_INLINE DoubleDoubles<V> add(DoubleDoubles<V> a, DoubleDoubles<V> b) {
   const DoubleDoubles<V> hi = two_sum(a.hi, b.hi);

@@ -63,24 +63,14 @@ class WettedSurfaceWalk {
 
  private:
   void visit(const TreeNode& node) {
-    const auto at = [this](const auto& by_axis, std::uint32_t i) {
-      return Vec3(tree_.unit * Vec3(by_axis[0][i], by_axis[1][i], by_axis[2][i]));
-    };
     for (std::uint32_t i = 0; i < node.children; ++i) {
-      const double height = plane_.height(at(node.center, i));
-      const double reach = plane_.up_B.cwiseAbs().dot(at(node.half, i)) + margin_;
+      const double height = plane_.height(tree_.center_of_child(node, i));
+      const double reach = plane_.up_B.cwiseAbs().dot(tree_.half_of_child(node, i)) + margin_;
       if (height - reach > 0.0) continue;
       if (height + reach < 0.0) {
         add_wet_node(node.first_moments + i);
-      } else if (i < node.inner_nodes) {
-        visit(tree_.nodes[node.first_node + i]);
       } else {
-        const std::uint32_t leaf = node.first_leaf + i - node.inner_nodes;
-        if (tree_.leaves.empty()) {
-          visit(tree_.double_leaves[leaf]);
-        } else {
-          visit(tree_.leaves[leaf]);
-        }
+        tree_.visit_child(node, i, [this](const auto& child) { visit(child); });
       }
     }
   }

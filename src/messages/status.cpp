@@ -62,7 +62,7 @@ SimdTarget simd_target_from_name(std::string_view name) {
   if (name == "SSSE3") return SimdTarget::kSsse3;
   if (name == "SSE4") return SimdTarget::kSse4;
   if (name == "AVX2") return SimdTarget::kAvx2;
-  if (name == "AVX3" || name == "AVX3_DL") return SimdTarget::kAvx3;
+  if (name.starts_with("AVX3")) return SimdTarget::kAvx3;
   if (name == "NEON") return SimdTarget::kNeon;
   return SimdTarget::kOther;
 }

@@ -1,4 +1,4 @@
-// Errors of the libraries as Python exceptions: buoyancy.Error and its subclasses (docs/python.md).
+// Errors of the libraries as Python exceptions: buoyancy.Error and its subclasses (docs/libraries.md).
 #pragma once
 
 #include <cstring>

@@ -70,6 +70,10 @@ Expected<void> RecordWriter::append(Bytes record) {
   return {};
 }
 
+Expected<void> RecordWriter::append(std::string_view record) {
+  return append(Bytes(reinterpret_cast<const std::uint8_t*>(record.data()), record.size()));
+}
+
 Expected<void> RecordWriter::flush() {
   std::size_t done = 0;
   while (done < buffer_.size()) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -33,6 +34,7 @@ class RecordWriter {
   // Buffered: an error may concern an earlier record. After an error the writer must not be used further.
   // Errors: disk full, the file or its reader is gone, a stalled reader (see give_up_after()).
   Expected<void> append(Bytes record);
+  Expected<void> append(std::string_view record);
 
   // Writes the buffered records. Errors: see append().
   Expected<void> flush();

@@ -35,10 +35,8 @@ Vec3 up_B_of(const Equilibrium& equilibrium, const Water& water) {
 bool is_balanced(const FloatingBody& body, const Eigen::Quaterniond& q_WB, const Water& water) {
   if (body.is_open()) return false;
   const std::optional<FloatingPose> afloat = find_floating_pose(body, q_WB, water);
-  if (!afloat) return false;
-  const std::optional<FloatingState> state = floating_state(body, afloat->pose, water);
   const double weight = body.total_mass() * water.gravity;
-  return state && state->torque_W.norm() <= kNoLever * weight * body.reach();
+  return afloat && afloat->state.torque_W.norm() <= kNoLever * weight * body.reach();
 }
 
 // Puts the equilibrium that the body reaches among its attitudes, in the place of the same one found from

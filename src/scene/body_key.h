@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "scene/body_motions.h"
+#include "scene/body_mass.h"
 
 namespace buoyancy {
 

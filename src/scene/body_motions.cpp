@@ -8,13 +8,11 @@
 #include <numbers>
 #include <utility>
 
-#include "base/format.h"
 #include "hydrodynamics/small_motions.h"
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/displacement_moments.h"
 #include "scene/body_key.h"
 #include "scene/floating_bodies.h"
-#include "scene/loaded_mass.h"
 #include "scene/start_pose.h"
 
 namespace buoyancy {
@@ -164,9 +162,6 @@ class LoadedBody {
 
   // About the centre of mass. q_WB: unit.
   std::optional<FloatingPose> afloat(const Eigen::Quaterniond& q_WB, const Water& water) const {
-    if (compartments_.empty()) {
-      return find_floating_pose(*mesh_, q_WB, total_.mass / water.density, water, total_.center_of_mass_B);
-    }
     std::vector<PlacedMesh> meshes = compartments_;
     meshes.insert(meshes.begin(), {.mesh = mesh_});
     const Expected<FloatingBody> floating = FloatingBody::make(meshes, total_.mass, total_.center_of_mass_B);
@@ -174,13 +169,13 @@ class LoadedBody {
   }
 
   State floating_state(const FloatingPose& floating, const Water& water) const {
-    double volume = floating.hydrostatics.volume;
+    double volume = floating.state.hydrostatics.volume;
     if (!compartments_.empty()) {
       volume = buoyancy(Solver(*mesh_, Method::kHierarchical), floating.pose, water, Vec3::Zero()).volume;
     }
     return {.volume_fraction = mesh_->is_open() ? 1.0 : std::min(1.0, volume / mesh_->volume),
-            .area_fraction = std::min(1.0, floating.hydrostatics.wetted_area / mesh_->area),
-            .stiffness_W = floating.hydrostatics.stiffness + of_weights(floating.pose.q_WB, water)};
+            .area_fraction = std::min(1.0, floating.state.hydrostatics.wetted_area / mesh_->area),
+            .stiffness_W = floating.state.hydrostatics.stiffness + of_weights(floating.pose.q_WB, water)};
   }
 
   State submerged_state(const Displaced& displaced, const Eigen::Quaterniond& q_WB,
@@ -289,47 +284,10 @@ BodyKey key_of(const Body& body, const BodyKeys& keys, const BodyMass& own) {
   return key;
 }
 
-std::string subject_of(const Body& body) {
-  return "body " + std::to_string(body.id) + " (" + body.name + ")";
-}
-
 }  // namespace
 
 double NaturalMotion::period() const {
   return frequency > 0.0 ? 2.0 * std::numbers::pi / frequency : kInfinity;
-}
-
-Expected<BodyMass> mass_of_body(const Body& body, const Water& water) {
-  const DynamicsSpec& spec = body.dynamics;
-  const MassProperties& enclosed = body.prepared_mesh->mass_properties;
-  if (body.prepared_mesh->mesh.is_open()) {
-    std::string missing;
-    for (const auto& [key, given] : {std::pair{"mass", spec.mass.has_value()},
-                                     {"center_of_mass", spec.center_of_mass_B.has_value()},
-                                     {"inertia", spec.inertia_B.has_value()}}) {
-      if (!given) missing += (missing.empty() ? "" : ", ") + std::string(key);
-    }
-    if (!missing.empty()) {
-      return make_error({subject_of(body), "an open mesh without " + missing,
-                         "mass, center_of_mass and inertia in [body.client]",
-                         "a simulation needs them, and an open mesh encloses no volume to derive them from",
-                         "Set what is missing, or close the mesh"});
-    }
-  }
-  const double density = spec.density.value_or(0.5 * water.density);
-  BodyMass result;
-  result.mass = spec.mass.value_or(density * enclosed.volume);
-  result.center_of_mass_B = spec.center_of_mass_B.value_or(enclosed.centroid_B);
-  result.inertia_B =
-      spec.inertia_B ? *spec.inertia_B : Mat3(enclosed.inertia_B * (result.mass / enclosed.volume));
-  if (!(result.mass > 0.0) || !std::isfinite(result.mass) || !result.inertia_B.allFinite()) {
-    return make_error({subject_of(body), "mass = " + format_number(result.mass, 6) + " kg",
-                       "a mass above 0, and with its inertia in double's range",
-                       "a density of " + format_number(density, 6) + " kg/m^3 times an enclosed volume of " +
-                           format_number(enclosed.volume, 6) + " m^3",
-                       "Set mass or density in [body.client]"});
-  }
-  return result;
 }
 
 std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh& mesh, const Water& water,
@@ -356,7 +314,7 @@ std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh&
       motions.balance = VerticalBalance::kFloats;
       motions.draft = floating->draft;
       const Vec3 lever_W =
-          floating->hydrostatics.center_of_buoyancy_W - matrices.R_WB() * rigid.center_of_mass_B;
+          floating->state.hydrostatics.center_of_buoyancy_W - matrices.R_WB() * rigid.center_of_mass_B;
       motions.turning_lever = (lever_W - water.up_W.dot(lever_W) * water.up_W).norm();
       const State state = loaded.floating_state(*floating, water);
       motions.natural = natural_motions(matrices, state, mesh, rigid.center_of_mass_B, water);

@@ -19,21 +19,11 @@
 #include <string>
 #include <vector>
 
+#include "scene/body_mass.h"
 #include "scene/floating_pose.h"
 #include "scene/scene.h"
 
 namespace buoyancy {
-
-// The mass of a body as the simulator uses it; see loaded_mass.h for the liquids in its tanks.
-struct BodyMass {
-  double mass = 0.0;                     // [kg], > 0
-  Vec3 center_of_mass_B = Vec3::Zero();  // [m], C
-  Mat3 inertia_B = Mat3::Zero();         // [kg m^2], about C
-};
-
-// What [body.client] gives, without the liquids; the rest derived from the mesh as it says. Errors: an open
-// mesh leaves something unknown; a value is not above 0 or not finite.
-Expected<BodyMass> mass_of_body(const Body& body, const Water& water);
 
 // Heave, roll or pitch.
 struct NaturalMotion {

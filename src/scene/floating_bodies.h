@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "flotation/floating_body.h"
-#include "scene/body_motions.h"
+#include "scene/body_mass.h"
 #include "scene/scene.h"
 
 namespace buoyancy {

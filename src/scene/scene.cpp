@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/format.h"
+#include "scene/body_mass.h"
 #include "scene/scene_meshes.h"
 
 namespace buoyancy {
@@ -28,12 +29,6 @@ MeshUser user_of(const BodyDescription& body, std::string_view section, const st
   user += section;
   user += " '" + name + "'";
   return {source_location, std::move(user), false};
-}
-
-std::optional<Vec3> center_of_mass(const DynamicsSpec& dynamics, const PreparedMesh& prepared) {
-  if (dynamics.center_of_mass_B) return dynamics.center_of_mass_B;
-  if (prepared.mesh.is_open() || !(dynamics.mass || dynamics.density)) return std::nullopt;
-  return prepared.mass_properties.centroid_B;
 }
 
 // Returns nullptr for water at rest.
@@ -94,7 +89,7 @@ Expected<Vec3> coefficient_center(const BodyDescription& body, const PreparedMes
                          "Set immersion, or close the mesh"}));
   }
   if (given) return *given;
-  if (const std::optional<Vec3> known = center_of_mass(body.dynamics, prepared)) return *known;
+  if (const std::optional<Vec3> known = given_center_of_mass(body.dynamics, prepared)) return *known;
   if (!open) return prepared.mass_properties.centroid_B;
   return make_error(with_body(body, {table, "no center", "center = [x, y, z] (m, body frame)",
                                      "an open mesh encloses no volume whose centroid could be taken", ""}));
@@ -319,7 +314,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
     }
     Body& added = scene.bodies_.emplace_back(
         Body{body.id, body.name, &prepared, Solver(prepared.mesh, body.method, tolerance), body.reference_B,
-             body.hydrostatics, body.loads, hydrodynamics, center_of_mass(body.dynamics, prepared),
+             body.hydrostatics, body.loads, hydrodynamics, given_center_of_mass(body.dynamics, prepared),
              std::move(dynamics), nullptr, nullptr});
     if (!mesh->parts.empty()) {
       scene.parts_.push_back(std::make_unique<std::vector<BodyPart>>(std::move(mesh->parts)));

@@ -44,7 +44,7 @@ struct Body {
   // Of a body with drag or added mass, else nullptr; owned by the scene, and shared by equal bodies. A body
   // whose coefficients scale with the wetted area has a mesh with a moment tree.
   const HydrodynamicModel* hydrodynamics = nullptr;
-  // [m]; set if [body.client] has center_of_mass, or has mass or density and the mesh is closed.
+  // [m]; see given_center_of_mass() (body_mass.h).
   std::optional<Vec3> center_of_mass_B;
   DynamicsSpec dynamics;  // section [body.client]
   // Of a body with parts, compartments or tanks, else nullptr; owned by the scene. The parts begin with the

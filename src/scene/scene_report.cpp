@@ -28,20 +28,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Returns the mass that the simulator uses; nullopt if it is unknown, since an open mesh encloses no volume.
-std::optional<double> mass_of(const Body& body, const Water& water) {
-  if (body.dynamics.mass) return body.dynamics.mass;
-  if (body.prepared_mesh->mesh.is_open()) return std::nullopt;
-  return body.dynamics.density.value_or(0.5 * water.density) * body.prepared_mesh->mass_properties.volume;
-}
-
-std::optional<double> density_of(const Body& body, const Water& water) {
-  if (body.dynamics.density) return body.dynamics.density;
-  if (!body.dynamics.mass) return 0.5 * water.density;
-  if (body.prepared_mesh->mesh.is_open()) return std::nullopt;
-  return *body.dynamics.mass / body.prepared_mesh->mass_properties.volume;
-}
-
 std::vector<const Body*> users_of(const PreparedMesh& mesh, const Scene& scene) {
   std::vector<const Body*> users;
   for (const Body& body : scene.bodies()) {
@@ -78,8 +64,8 @@ std::string body_text(const Body& body, const Scene& scene) {
   text += "  outputs       ";
   for (const std::string& output : outputs_of(body)) text += (text.back() == ' ' ? "" : ", ") + output;
   text += "\n";
-  const std::optional<double> mass = mass_of(body, scene.water());
-  const std::optional<double> density = density_of(body, scene.water());
+  const std::optional<double> mass = known_mass(body, scene.water());
+  const std::optional<double> density = known_density(body, scene.water());
   if (mass) {
     const bool is_default = !body.dynamics.mass && !body.dynamics.density;
     text += "  mass          " + format_number(*mass) + " kg" +
@@ -241,8 +227,8 @@ Json to_json(const Body& body, const Scene& scene) {
             {"tolerance", body.solver.tolerance()},
             {"reference_point", to_json(body.reference_B)},
             {"outputs", outputs_of(body)},
-            {"mass", to_json(mass_of(body, scene.water()))},
-            {"density", to_json(density_of(body, scene.water()))}};
+            {"mass", to_json(known_mass(body, scene.water()))},
+            {"density", to_json(known_density(body, scene.water()))}};
   add_subdivision(body, scene, json);
   if (body.hydrodynamics == nullptr) return json;
   const HydrodynamicCoefficients& coefficients = body.hydrodynamics->coefficients();

@@ -1,28 +1,21 @@
 #include "simulation/added_mass_modes.h"
 
-#include <cmath>
-
-#include "hydrodynamics/symmetric_eigenvalues.h"
+#include "hydrodynamics/linear_algebra.h"
 
 namespace buoyancy {
-namespace {
-
-// diag(m, I) to a power, in B's axes.
-Mat6 mass_to_power(const RigidBody& rigid, double power) {
-  Mat6 matrix = Mat6::Zero();
-  matrix.diagonal().head<3>().setConstant(std::pow(rigid.mass, power));
-  const Vec3 inertia = rigid.principal_inertia.array().pow(power);
-  matrix.bottomRightCorner<3, 3>() =
-      rigid.principal_axes_B * inertia.asDiagonal() * rigid.principal_axes_B.transpose();
-  return matrix;
-}
-
-}  // namespace
 
 Mat6 congruent(const Mat6& matrix, const Mat6& N) {
   // Coefficient by coefficient: Eigen's blocked products are expensive to compile.
   const Mat6 half = matrix.lazyProduct(N);
   return N.transpose().lazyProduct(half);
+}
+
+Mat6 mass_at_center(const RigidBody& rigid) {
+  Mat6 mass = Mat6::Zero();
+  mass.diagonal().head<3>().setConstant(rigid.mass);
+  mass.bottomRightCorner<3, 3>() =
+      rigid.principal_axes_B * rigid.principal_inertia.asDiagonal() * rigid.principal_axes_B.transpose();
+  return mass;
 }
 
 Mat6 added_mass_at_center(const Body& body, const RigidBody& rigid) {
@@ -32,12 +25,11 @@ Mat6 added_mass_at_center(const Body& body, const RigidBody& rigid) {
 }
 
 AddedMassModes::AddedMassModes(const RigidBody& rigid, const Mat6& added_mass_B) {
-  const Mat6 by_mass = mass_to_power(rigid, -0.5);
-  const Mat6 scaled = congruent(added_mass_B, by_mass);
-  const SymmetricEigen6 eigen = symmetric_eigen(0.5 * (scaled + scaled.transpose()));
+  const Mat6 mass = mass_at_center(rigid);
+  const SymmetricEigen<6> eigen = symmetric_eigen<6>(added_mass_B, mass);
   ratio_ = eigen.values.cwiseMax(0.0);
-  to_twist_ = by_mass.lazyProduct(eigen.vectors);
-  to_modal_ = eigen.vectors.transpose().lazyProduct(mass_to_power(rigid, 0.5));
+  to_twist_ = eigen.vectors;
+  to_modal_ = eigen.vectors.transpose().lazyProduct(mass);
 }
 
 Vec6 AddedMassModes::modal(const Vec6& twist_B, double immersion) const {

@@ -2,9 +2,9 @@
 // square.
 //
 // Let nu = (R^T v, R^T w) be the twist of the centre of mass C in B's axes, M = diag(m, I) the body's mass
-// matrix and A its added mass about C, s the immersion. With a_i and Q the eigenvalues and eigenvectors of
-// M^-1/2 A M^-1/2, the matrix V = M^-1/2 Q makes both diagonal: V^T M V = 1 and V^T A V = diag(a). In the
-// modal velocities u_i = sqrt(1 + s a_i) (V^-1 nu)_i the energy 1/2 nu . (M + s A) nu is 1/2 u . u.
+// matrix and A its added mass about C, s the immersion. The eigenvectors V of A V = M V diag(a) make both
+// diagonal: V^T M V = 1 and V^T A V = diag(a), so that V^-1 = V^T M. In the modal velocities
+// u_i = sqrt(1 + s a_i) (V^-1 nu)_i the energy 1/2 nu . (M + s A) nu is 1/2 u . u.
 #pragma once
 
 #include <algorithm>
@@ -31,6 +31,9 @@ class AddedMassModes {
 
 // N^T matrix N.
 Mat6 congruent(const Mat6& matrix, const Mat6& N);
+
+// The body's own mass matrix M, in B's axes.
+Mat6 mass_at_center(const RigidBody& rigid);
 
 // A body's added mass about its centre of mass, in B's axes; zero if it has none.
 Mat6 added_mass_at_center(const Body& body, const RigidBody& rigid);

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "engine/load_evaluation.h"
-#include "hydrodynamics/linear_solver.h"
+#include "hydrodynamics/linear_algebra.h"
 #include "hydrostatics/hydrostatics.h"
 #include "messages/conversions.h"
 
@@ -61,9 +61,9 @@ HydrodynamicMotion::HydrodynamicMotion(const Body& body, const RigidBody& rigid,
       rigid_(rigid),
       water_(water),
       current_W_(current_W),
+      mass_B_(mass_at_center(rigid)),
       added_mass_B_(added_mass_at_center(body, rigid)),
       modes_(rigid, added_mass_B_) {
-  set_mass();
   const auto& drag = body.hydrodynamics->coefficients().drag;
   quadratic_drag_is_diagonal_ = !drag || is_diagonal(drag->quadratic);
   for (const Damping& damping : {rigid.linear_damping, rigid.angular_damping}) {
@@ -73,16 +73,10 @@ HydrodynamicMotion::HydrodynamicMotion(const Body& body, const RigidBody& rigid,
 
 void HydrodynamicMotion::set_rigid_body(const RigidBody& rigid) {
   rigid_ = rigid;
+  mass_B_ = mass_at_center(rigid);
   added_mass_B_ = added_mass_at_center(*body_, rigid);
   modes_ = AddedMassModes(rigid, added_mass_B_);
-  set_mass();
   half_jump_.setZero();
-}
-
-void HydrodynamicMotion::set_mass() {
-  mass_B_.diagonal().head<3>().setConstant(rigid_.mass);
-  mass_B_.bottomRightCorner<3, 3>() =
-      rigid_.principal_axes_B * rigid_.principal_inertia.asDiagonal() * rigid_.principal_axes_B.transpose();
 }
 
 HydrodynamicMotion::Immersions HydrodynamicMotion::immersions(double displaced, const Pose& pose) const {

@@ -67,7 +67,6 @@ class HydrodynamicMotion {
   // displaced: [m^3], without what open compartments take from it; of these, the water at rest is taken.
   Immersions immersions(double displaced, const Pose& pose) const;
   double added_kinetic_energy(const RigidBodyState& state, double immersion) const;
-  void set_mass();  // of the rigid body
 
   // Relative to water that has this velocity everywhere.
   Vec6 relative_twist(const RigidBodyState& state, const Vec3& water_velocity_W) const;

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "flotation/floating_body.h"
 #include "geometry/rotation_between.h"
-#include "hydrodynamics/symmetric_eigenvalues.h"
+#include "hydrodynamics/linear_algebra.h"
 #include "hydrostatics/hydrostatics.h"
-#include "scene/loaded_mass.h"
+#include "hydrostatics/lowest_vertex.h"
+#include "scene/body_mass.h"
 #include "simulation/hydrodynamic_motion.h"
 
 namespace buoyancy {
@@ -39,21 +39,10 @@ class MeshWithTree {
   const HydrostaticMesh* mesh_;
 };
 
-// The highest frequency of M^-1/2 K M^-1/2, whose symmetric part is taken.
-double frequency_of(Mat6 scaled) {
-  scaled = (0.5 * (scaled + scaled.transpose())).eval();
-  if (!scaled.allFinite()) return 0.0;
-  return std::sqrt(std::max(symmetric_eigen(scaled).values.maxCoeff(), 0.0));
-}
-
 // A body's added mass, if it has one.
 struct AddedMass {
-  AddedMass(const Body& body, const RigidBody& rigid)
-      : modes(rigid, added_mass_at_center(body, rigid)),
-        scaling(body.hydrodynamics->coefficients().added_mass->immersion) {}
-
-  AddedMassModes modes;
-  ImmersionScaling scaling;
+  Mat6 matrix_B = Mat6::Zero();  // about the centre of mass
+  ImmersionScaling scaling = ImmersionScaling::kVolume;
 };
 
 // What the water does to a body: with its compartments and tanks, if it has them.
@@ -95,25 +84,15 @@ double frequency_at(const WaterLoad& load, const HydrostaticMesh& mesh, const Ri
                     const std::optional<AddedMass>& added_mass, const RigidBodyState& state) {
   const std::optional<Hydrostatics> result = load.at(pose_of(rigid, state));
   if (!result) return 0.0;
+  Mat6 mass_B = mass_at_center(rigid);
   if (added_mass) {
     const double s =
         immersion_of(added_mass->scaling, mesh, result->volume, [&] { return result->wetted_area; });
-    const Mat6 K_B = rotated(result->stiffness, state.q_WB.conjugate().toRotationMatrix());
-    return frequency_of(congruent(K_B, added_mass->modes.twist_of_modal(s)));
+    mass_B += s * added_mass->matrix_B;
   }
-  const Mat3 axes_W = state.q_WB.toRotationMatrix() * rigid.principal_axes_B;
-  // M^-1/2 K M^-1/2, with M^-1/2 = diag(by_mass, by_inertia): computed block by block, since products of
-  // 6 x 6 matrices are expensive to compile.
-  const double by_mass = 1.0 / std::sqrt(rigid.mass);
-  const Mat3 by_inertia =
-      axes_W * rigid.principal_inertia.cwiseSqrt().cwiseInverse().asDiagonal() * axes_W.transpose();
-  const Mat6& K = result->stiffness;
-  Mat6 scaled;
-  scaled.topLeftCorner<3, 3>() = by_mass * by_mass * K.topLeftCorner<3, 3>();
-  scaled.topRightCorner<3, 3>() = by_mass * K.topRightCorner<3, 3>() * by_inertia;
-  scaled.bottomLeftCorner<3, 3>() = by_mass * by_inertia * K.bottomLeftCorner<3, 3>();
-  scaled.bottomRightCorner<3, 3>() = by_inertia * K.bottomRightCorner<3, 3>() * by_inertia;
-  return frequency_of(scaled);
+  const Mat6 K_B = rotated(result->stiffness, state.q_WB.conjugate().toRotationMatrix());
+  // A value that is not a number counts as 0.
+  return std::sqrt(std::max(0.0, symmetric_eigen<6>(K_B, mass_B).values[5]));
 }
 
 // Candidate up directions in B: along the principal axes and along the bisectors of each two and three of
@@ -134,22 +113,14 @@ std::vector<Vec3> directions_B(const RigidBody& rigid) {
 }
 
 struct Extent {
-  double min = std::numeric_limits<double>::infinity();   // [m]
-  double max = -std::numeric_limits<double>::infinity();  // [m]
+  double min = 0.0;  // [m]
+  double max = 0.0;  // [m]
 };
 
 // Extent of the mesh along a direction, relative to the centre of mass.
 Extent extent_along(const HydrostaticMesh& mesh, const RigidBody& rigid, const Vec3& up_B) {
   const double offset = up_B.dot(mesh.center_B - rigid.center_of_mass_B);
-  Extent extent;
-  for (const Triangle& triangle : mesh.surface.triangles) {
-    for (const std::int32_t i : triangle) {
-      const double height = up_B.dot(mesh.vertex(i)) + offset;
-      extent.min = std::min(extent.min, height);
-      extent.max = std::max(extent.max, height);
-    }
-  }
-  return extent;
+  return {offset + lowest_vertex(*mesh.tree, up_B), offset - lowest_vertex(*mesh.tree, -up_B)};
 }
 
 }  // namespace
@@ -188,7 +159,8 @@ HighestNaturalFrequency highest_natural_frequency(const Body& body, const RigidB
   if (!energy) return {};
   std::optional<AddedMass> added_mass;
   if (body.hydrodynamics != nullptr && body.hydrodynamics->coefficients().added_mass) {
-    added_mass.emplace(body, rigid);
+    added_mass = {.matrix_B = added_mass_at_center(body, rigid),
+                  .scaling = body.hydrodynamics->coefficients().added_mass->immersion};
     *energy += HydrodynamicMotion(body, rigid, water, Vec3::Zero())
                    .added_kinetic_energy_at_pose(state)
                    .value_or(0.0);

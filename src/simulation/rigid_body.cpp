@@ -13,7 +13,6 @@
 #include "hydrostatics/hierarchical.h"
 #include "messages/conversions.h"
 #include "scene/floating_bodies.h"
-#include "scene/loaded_mass.h"
 
 namespace buoyancy {
 namespace {
@@ -33,20 +32,13 @@ Vec3 angular_momentum_of(const RigidBody& body, const Eigen::Quaterniond& q_WB, 
   return q_WB * Vec3(body.principal_axes_B * body.principal_inertia.cwiseProduct(w_P));
 }
 
-// The liquids, and the first moment [kg m] of them and of the body, about C in B's axes.
-struct Weights {
-  double mass = 0.0;  // [kg]
-  Vec3 moment = Vec3::Zero();
-};
-
+// About C, with the liquids as they lie at the attitude.
 Weights weights_at(const RigidBody& body, const BodyContents& contents, const Vec3& up_B) {
   LiquidSum liquids;
   for (const Tank& tank : contents.tanks) {
     add_liquid(tank, tank_liquid(tank, up_B), body.center_of_mass_B, liquids);
   }
-  const BodyMass& own = contents.own;
-  return {own.mass + liquids.mass,
-          own.mass * (own.center_of_mass_B - body.center_of_mass_B) + liquids.moment};
+  return weights_of(contents.own, liquids, body.center_of_mass_B);
 }
 
 // [J], potential of what the body weighs, with its liquids.

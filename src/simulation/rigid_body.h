@@ -5,7 +5,7 @@
 // while w = I_W^-1 L is not. Messages refer to B's origin and to the body's reference point r: the velocity
 // of B's origin is v - w x (R c), and tau about C = tau about r + (r - C) x F.
 //
-// The liquids in the tanks of a body are frozen in its mass, in C and in its inertia (scene/loaded_mass.h),
+// The liquids in the tanks of a body are frozen in its mass, in C and in its inertia (scene/body_mass.h),
 // so that it falls with g. Their weight is part of the wrench, where they are at the present attitude; that
 // of the body without them acts at its own centre of mass, which is not C.
 #pragma once
@@ -20,7 +20,7 @@
 #include "hydrostatics/solver.h"
 #include "hydrostatics/water_plane.h"
 #include "messages/request.h"
-#include "scene/body_motions.h"
+#include "scene/body_mass.h"
 #include "scene/scene.h"
 
 namespace buoyancy {

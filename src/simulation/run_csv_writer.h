@@ -9,13 +9,13 @@
 // the row's pose (free-running: the newest response at that time).
 #pragma once
 
+#include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <utility>
 
+#include "recording/record_writer.h"
 #include "simulation/simulation.h"
 
 namespace buoyancy {
@@ -26,21 +26,21 @@ class RunCsvWriter {
   // of it. Errors: the file cannot be written.
   static Expected<RunCsvWriter> create(const std::filesystem::path& path, std::int64_t every = 1);
 
-  Expected<void> write(const Simulation& simulation);  // Errors: the file cannot be written, e.g. a full disk
-  Expected<void> close();                              // Errors: same; the last rows may then be missing
+  // See RecordWriter.
+  void give_up_after(int signal) { file_.give_up_after(signal); }
+
+  // Buffered for half a second at most, as long as steps are written. Errors: the file cannot be written,
+  // e.g. a full disk; it may concern an earlier row. The file then ends with a complete step.
+  Expected<void> write(const Simulation& simulation);
+  // Writes the buffered rows; the last ones are lost without it. Errors: as for write().
+  Expected<void> flush();
 
  private:
-  struct FileCloser {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
+  RunCsvWriter(std::int64_t every, RecordWriter file) : every_(every), file_(std::move(file)) {}
 
-  RunCsvWriter(std::filesystem::path path, std::int64_t every, std::FILE* file)
-      : path_(std::move(path)), every_(every), file_(file) {}
-  tl::unexpected<Error> write_error() const;
-
-  std::filesystem::path path_;
   std::int64_t every_;
-  std::unique_ptr<std::FILE, FileCloser> file_;
+  RecordWriter file_;
+  Clock::time_point flush_at_;
   std::string rows_;  // reused
 };
 

@@ -271,7 +271,7 @@ Expected<void> Simulation::check_motion() const {
 }
 
 Expected<RunOutcome> run(Simulation& simulation, SimulationClient& client, std::int64_t steps,
-                         const std::atomic<bool>& stop,
+                         const std::function<bool()>& is_stopped,
                          const std::function<Expected<void>(const Simulation&)>& after_step) {
   while (true) {
     if (ConditionSchedule& conditions = simulation.conditions(); !conditions.empty()) {
@@ -280,7 +280,7 @@ Expected<RunOutcome> run(Simulation& simulation, SimulationClient& client, std::
       set_conditions(client, conditions.announced_at(step), repeated);
     }
     const Expected<const WrenchResponse*> response = buoyancy::request(client, simulation.request());
-    if (!response && stop.load()) return RunOutcome::kInterrupted;
+    if (!response && is_stopped()) return RunOutcome::kInterrupted;
     if (!response) return make_error(response.error());
     simulation.accept(**response);
     if (const Expected<void> finite = simulation.check_motion(); !finite) return make_error(finite.error());
@@ -288,7 +288,7 @@ Expected<RunOutcome> run(Simulation& simulation, SimulationClient& client, std::
       return make_error(observed.error());
     if (const Expected<void> ok = simulation.check_wrenches(); !ok) return make_error(ok.error());
     if (simulation.step_number() >= steps) return RunOutcome::kCompleted;
-    if (stop.load()) return RunOutcome::kInterrupted;
+    if (is_stopped()) return RunOutcome::kInterrupted;
     simulation.advance();
   }
 }

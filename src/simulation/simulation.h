@@ -6,7 +6,6 @@
 // run.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -40,7 +39,7 @@ struct EnergyStats {
   double min = 0.0;
   double max = 0.0;
   double max_kinetic = 0.0;
-  // What gravity, waves and current can give to the body in the scene's scale, see docs/simulator.md.
+  // What gravity, waves and current can give to the body in the scene's scale, see docs/runs.md.
   double available = 0.0;
 };
 
@@ -130,11 +129,11 @@ class Simulation {
 
 enum class RunOutcome { kCompleted, kInterrupted };
 
-// Runs `steps` steps, or until stop becomes true. Calls after_step at the start and after every step, also
-// after the one whose wrenches end the run, but never with a state that is not finite and a wrench that is
-// OK. An error that after_step returns ends the run.
+// Runs `steps` steps, or until is_stopped returns true, which is asked in every step. Calls after_step at the
+// start and after every step, also after the one whose wrenches end the run, but never with a state that is
+// not finite and a wrench that is OK. An error that after_step returns ends the run.
 Expected<RunOutcome> run(Simulation& simulation, SimulationClient& client, std::int64_t steps,
-                         const std::atomic<bool>& stop,
+                         const std::function<bool()>& is_stopped,
                          const std::function<Expected<void>(const Simulation&)>& after_step);
 
 }  // namespace buoyancy

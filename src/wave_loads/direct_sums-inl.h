@@ -18,25 +18,12 @@
 #include <hwy/highway.h>
 
 #include "wave_loads/direct_sea.h"
+#include "wave_loads/wave_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 namespace direct {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-template <typename Number>
-using LanesOf = hn::CappedTag<Number, 16>;
-template <typename Number>
-using VectorOf = hn::Vec<LanesOf<Number>>;
-template <typename Number>
-inline constexpr std::size_t kLanes = hn::MaxLanes(LanesOf<Number>());
-
-template <typename Number>
-HWY_INLINE VectorOf<Number> set(double number) {
-  return hn::Set(LanesOf<Number>(), static_cast<Number>(number));
-}
 
 // Points that are evaluated together; as many as are summed up before sums are added pairwise.
 inline constexpr std::size_t kPointBlock = 256;

@@ -14,13 +14,12 @@
 
 #include <hwy/highway.h>
 
+#include "base/simd-inl.h"
 #include "wave_loads/patch_tree.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 template <typename Number>
 using LanesOf = hn::CappedTag<Number, 16>;
@@ -137,10 +136,7 @@ HWY_INLINE VectorOf<Number> frobenius_squared(const Symmetric<Number>& h) {
 // The lanes of a mask, the first in the lowest bit.
 template <typename Number>
 HWY_INLINE std::uint32_t bits_of(const hn::Mask<LanesOf<Number>>& mask) {
-  static_assert(kLanes<Number> <= 16);
-  std::array<std::uint8_t, 8> bits{};
-  hn::StoreMaskBits(LanesOf<Number>(), mask, bits.data());
-  return bits[0] + 256U * bits[1];
+  return mask_bits(LanesOf<Number>(), mask);
 }
 
 template <typename Number>

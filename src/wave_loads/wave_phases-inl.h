@@ -12,6 +12,7 @@
 
 #include <hwy/highway.h>
 
+#include "base/simd-inl.h"
 #include "wave_loads/wave_lanes-inl.h"
 #include "wave_loads/wave_query.h"
 
@@ -19,41 +20,14 @@ HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 
-// Products and sums of double precision whose rounding errors are known.
-struct ExactDouble {
-  VectorOf<double> value, error;
-};
-
-HWY_INLINE ExactDouble exact_product(const VectorOf<double>& a, const VectorOf<double>& b) {
-  const VectorOf<double> product = a * b;
-#if HWY_NATIVE_FMA
-  return {product, hn::MulSub(a, b, product)};
-#else
-  const VectorOf<double> split = set<double>(134217729.0);  // 2^27 + 1, Dekker (1971)
-  const VectorOf<double> a_scaled = split * a;
-  const VectorOf<double> a_hi = a_scaled - (a_scaled - a);
-  const VectorOf<double> a_lo = a - a_hi;
-  const VectorOf<double> b_scaled = split * b;
-  const VectorOf<double> b_hi = b_scaled - (b_scaled - b);
-  const VectorOf<double> b_lo = b - b_hi;
-  return {product, ((a_hi * b_hi - product) + a_hi * b_lo + a_lo * b_hi) + a_lo * b_lo};
-#endif
-}
-
-HWY_INLINE ExactDouble exact_sum(const VectorOf<double>& a, const VectorOf<double>& b) {
-  const VectorOf<double> sum = a + b;
-  const VectorOf<double> b_part = sum - a;
-  return {sum, (a - (sum - b_part)) + (b - b_part)};
-}
-
 inline constexpr double kTurn = 6.283185307179586;             // 2 pi, rounded
 inline constexpr double kRestOfTurn = 2.4492935982947064e-16;  // what the rounding took
 
 // The rest of an angle [rad] within half a turn of 0.
 HWY_INLINE VectorOf<double> within_turn(const VectorOf<double>& angle) {
   const VectorOf<double> turns = hn::Round(angle * set<double>(1.0 / kTurn));
-  const ExactDouble whole = exact_product(turns, set<double>(kTurn));
-  const VectorOf<double> rest = (angle - whole.value) - whole.error;
+  const auto whole = two_product(turns, set<double>(kTurn));
+  const VectorOf<double> rest = (angle - whole.hi) - whole.lo;
   return rest - turns * set<double>(kRestOfTurn);
 }
 
@@ -73,14 +47,14 @@ HWY_INLINE void set_phases(const WaveQuery& query, std::vector<double>& phases) 
   const VectorOf<double> x1 = set<double>(query.x1);
   const VectorOf<double> x2 = set<double>(query.x2);
   for (std::size_t i = 0; i < sea.filled_components; i += kLanes<double>) {
-    const ExactDouble along1 = exact_product(hn::LoadU(d, &sea.k1_W[i]), x1);
-    const ExactDouble along2 = exact_product(hn::LoadU(d, &sea.k2_W[i]), x2);
-    const ExactDouble along = exact_sum(along1.value, along2.value);
+    const auto along1 = two_product(hn::LoadU(d, &sea.k1_W[i]), x1);
+    const auto along2 = two_product(hn::LoadU(d, &sea.k2_W[i]), x2);
+    const auto along = two_sum(along1.hi, along2.hi);
     const VectorOf<double> small = hn::LoadU(d, &sea.k1_rest[i]) * x1 + hn::LoadU(d, &sea.k2_rest[i]) * x2 +
-                                   ((along1.error + along2.error) + along.error);
+                                   ((along1.lo + along2.lo) + along.lo);
     const VectorOf<double> own = hn::GatherIndex(
         d, of_components, hn::LoadU(hn::RebindToSigned<LanesOf<double>>(), &sea.component_of_place[i]));
-    const VectorOf<double> phase = within_turn(along.value) + small + own;
+    const VectorOf<double> phase = within_turn(along.hi) + small + own;
     hn::StoreU(phase, d, &phases[i]);
   }
 }

@@ -278,8 +278,7 @@ TEST_F(BuoyancyClient, DelaysResponsesAndWarnsIfLeadTimeIsNotEnough) {
   EXPECT_EQ(with_lead["delay_steps"], 1);
   EXPECT_EQ(with_lead["warnings"].size(), 0U) << with_lead["warnings"];
   EXPECT_LT(double{body(with_lead, 1)["energy_range"]}, 1e-3);
-  // --late is the former name of --delay-steps.
-  const nlohmann::json without_lead = with({"--late", "1"});
+  const nlohmann::json without_lead = with({"--delay-steps", "1"});
   EXPECT_EQ(without_lead["delay_steps"], 1);
   ASSERT_EQ(without_lead["warnings"].size(), 1U) << without_lead["warnings"];
   EXPECT_TRUE(contains(std::string(without_lead["warnings"][0]), "energy rose"));
@@ -304,8 +303,6 @@ TEST_F(BuoyancyClient, ExplainsInvalidArgumentsAndScenesAndExitsWith2) {
       {scene_, {"--rate", "100", "--embedded"}, "--embedded"},
       {scene_, {"--rate", "100", "--delay-steps", "1"}, "--delay-steps"},
       {scene_, {"--delay-steps", "-1", "--embedded"}, "--delay-steps"},
-      {scene_, {"--late", "-1", "--embedded"}, "--delay-steps"},
-      {scene_, {"--late=-1", "--embedded"}, "--delay-steps"},
       {scene_, {"-l", "udpm://239.255.76.67:7667", "--embedded"}, "--embedded"},
       {scene_, {"--no-such-option"}, "--no-such-option"},
       {scene_, {"-l", "no url"}, "no url"},

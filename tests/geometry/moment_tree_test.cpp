@@ -55,8 +55,8 @@ template <typename Visit>
 void visit_children(const MomentTree& tree, const Visit& visit) {
   for (const TreeNode& node : tree.nodes) {
     for (std::uint32_t i = 0; i < node.children; ++i) {
-      const Vec3 center = tree.unit * Vec3(node.center[0][i], node.center[1][i], node.center[2][i]);
-      const Vec3 half = tree.unit * Vec3(node.half[0][i], node.half[1][i], node.half[2][i]);
+      const Vec3 center = tree.center_of_child(node, i);
+      const Vec3 half = tree.half_of_child(node, i);
       visit(leaves_below(tree, node, i), node.first_moments + i, BoundingBox{center - half, center + half});
     }
   }

@@ -39,6 +39,11 @@ Mat6 random_semidefinite(Random& random, Eigen::Index rank = 6) {
 }
 
 template <typename Random>
+Mat6 random_definite(Random& random) {
+  return random_semidefinite(random) + 0.1 * Mat6::Identity();
+}
+
+template <typename Random>
 Mat3 random_rotation(Random& random) {
   const Eigen::Vector4d q(random_number(random), random_number(random), random_number(random),
                           random_number(random));

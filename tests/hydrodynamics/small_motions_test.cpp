@@ -12,13 +12,9 @@
 namespace buoyancy {
 namespace {
 
-Mat6 random_mass(std::mt19937& random) {
-  return random_semidefinite(random) + 0.1 * Mat6::Identity();
-}
-
 Mat6 restoring(std::mt19937& random) {  // heave, roll and pitch alone
   Mat6 stiffness = Mat6::Zero();
-  stiffness.block<3, 3>(2, 2) = (random_semidefinite(random) + 0.1 * Mat6::Identity()).block<3, 3>(2, 2);
+  stiffness.block<3, 3>(2, 2) = random_definite(random).block<3, 3>(2, 2);
   return stiffness;
 }
 
@@ -53,7 +49,7 @@ TEST(SmallMotions, UncoupledMotionsHaveTheirOwnFrequencies) {
 TEST(SmallMotions, CoupledModesSolveTheEigenproblem) {
   std::mt19937 random(1);
   for (int run = 0; run < 200; ++run) {
-    const Mat6 mass = random_mass(random);
+    const Mat6 mass = random_definite(random);
     const Mat6 stiffness = restoring(random);
     const HeaveRollPitch modes = heave_roll_pitch(mass, stiffness).value();
     for (const MotionMode& mode : {modes.heave, modes.roll, modes.pitch}) {
@@ -128,7 +124,7 @@ TEST(SmallMotions, StepLimitOfOneDegreeOfFreedomHasItsClosedForm) {
 TEST(SmallMotions, StepLimitSeparatesDecayFromGrowth) {
   std::mt19937 random(3);
   for (int run = 0; run < 100; ++run) {
-    const Mat6 mass = random_mass(random);
+    const Mat6 mass = random_definite(random);
     const Mat6 damping = 0.05 * random_semidefinite(random) + 0.01 * Mat6::Identity();
     const Mat6 stiffness = random_semidefinite(random) + 0.01 * Mat6::Identity();
     const double step = max_explicit_step(mass, damping, stiffness).value();
@@ -146,7 +142,7 @@ TEST(SmallMotions, StepLimitIgnoresDirectionsThatNothingRestores) {
 TEST(SmallMotions, MassRatioIsTheLargestOverAllMotions) {
   std::mt19937 random(4);
   for (int run = 0; run < 50; ++run) {
-    const Mat6 mass = random_mass(random);
+    const Mat6 mass = random_definite(random);
     const Mat6 added = random_semidefinite(random);
     const double ratio = max_mass_ratio(mass, added).value();
     double largest = 0.0;

@@ -305,7 +305,7 @@ TEST(BodyCsv, WritesTheColumnsThatTheDocsState) {
   EXPECT_TRUE(contains(replay, "`" + csv_header<BodyState>({"body_id", "quaternion_wxyz"}) + "`"));
   EXPECT_TRUE(contains(replay, "\n    " + csv_header<BodyWrench>() + "\n"));
   EXPECT_TRUE(contains(
-      text_of("docs/simulator.md"),
+      text_of("docs/runs.md"),
       "\n    " + states + "," + csv_columns<BodyWrench>({"status", "center_of_buoyancy"}) + ",energy\n"));
 }
 

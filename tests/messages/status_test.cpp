@@ -152,6 +152,8 @@ TEST(ServiceStatus, MapsSimdTargetsToWireConstants) {
   EXPECT_EQ(value("SSE4"), service_status_t::SIMD_SSE4);
   EXPECT_EQ(value("AVX2"), service_status_t::SIMD_AVX2);
   EXPECT_EQ(value("AVX3"), service_status_t::SIMD_AVX3);
+  EXPECT_EQ(value("AVX3_DL"), service_status_t::SIMD_AVX3);
+  EXPECT_EQ(value("AVX3_ZEN4"), service_status_t::SIMD_AVX3);
   EXPECT_EQ(value("NEON"), service_status_t::SIMD_NEON);
   EXPECT_EQ(value("Z80"), service_status_t::SIMD_OTHER);
 }

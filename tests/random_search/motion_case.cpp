@@ -7,7 +7,7 @@
 
 #include "geometry/shapes.h"
 #include "hydrodynamics/coefficient_checks.h"
-#include "hydrodynamics/symmetric_eigenvalues.h"
+#include "hydrodynamics/linear_algebra.h"
 #include "simulation/natural_frequency.h"
 #include "simulation/run_warnings.h"
 #include "tests/hydrostatics/random_poses.h"
@@ -34,7 +34,7 @@ Mat6 random_semidefinite(RandomPoses& random) {
   const Mat6 factor = random_matrix(random);
   const auto rank = static_cast<Eigen::Index>(1 + random.pick(6));
   const Mat6 square = factor.leftCols(rank) * factor.leftCols(rank).transpose();
-  return square / symmetric_eigen(square).values.maxCoeff();
+  return square / symmetric_eigen<6>(square, Mat6::Identity()).values[5];
 }
 
 Mat6 random_diagonal(RandomPoses& random) {

@@ -1,4 +1,4 @@
-// The random search for motions that gain energy (docs/simulator.md): bodies with drag and added mass in
+// The random search for motions that gain energy (docs/runs.md): bodies with drag and added mass in
 // water at rest, moved by the simulator with wrenches from the request handler.
 //
 // A submerged, neutrally buoyant body never gains kinetic energy, that of the added mass included, from one
@@ -16,7 +16,7 @@ namespace buoyancy {
 // Growth of the kinetic energy in a step, as a fraction of itself, that counts as rounding.
 inline constexpr double kRoundingGrowth = 1e-10;
 
-// The energy's oscillation at a step times frequency of 0.5, as docs/simulator.md states it.
+// The energy's oscillation at a step times frequency of 0.5, as docs/runs.md states it.
 constexpr double documented_oscillation(Integrator integrator) {
   return integrator == Integrator::kVelocityVerlet ? 0.06 : 0.25;
 }

@@ -14,6 +14,12 @@
 namespace buoyancy {
 namespace {
 
+// A body of the weight of this volume of water.
+FloatingBody body_of(const HydrostaticMesh& mesh, double volume, const Water& water) {
+  const std::array<PlacedMesh, 1> meshes{{{.mesh = &mesh}}};
+  return FloatingBody::make(meshes, volume * water.density, Vec3::Zero()).value();
+}
+
 TEST(FloatingPose, DisplacesTheRequestedVolume) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -29,10 +35,10 @@ TEST(FloatingPose, DisplacesTheRequestedVolume) {
       const double fraction = run % 2 == 0 ? std::pow(10.0, -exponent) : 1.0 - std::pow(10.0, -exponent);
       const double volume = fraction * mesh.volume;
       const Water water{.up_W = Vec3(0.6, 0.0, 0.8), .level = 7.0};
-      const auto floating = find_floating_pose(mesh, q, volume, water, Vec3::Zero());
-      if (volume <= 0.0 || volume > mesh.volume) continue;
+      const auto floating = find_floating_pose(body_of(mesh, volume, water), q, water);
       ASSERT_TRUE(floating) << fraction;
-      EXPECT_NEAR(floating->hydrostatics.volume, volume, 4.0 * mesh.volume_tolerance() + 1e-14 * mesh.area)
+      EXPECT_NEAR(floating->state.hydrostatics.volume, volume,
+                  4.0 * mesh.volume_tolerance() + 1e-14 * mesh.area)
           << fraction;
       double lowest = std::numeric_limits<double>::infinity();
       for (std::size_t i = 0; i < mesh.surface.x.size(); ++i) {
@@ -43,9 +49,8 @@ TEST(FloatingPose, DisplacesTheRequestedVolume) {
       EXPECT_NEAR(floating->draft, water.level - lowest, 1e-12);
     }
     const Water water;
-    EXPECT_FALSE(
-        find_floating_pose(mesh, Eigen::Quaterniond::Identity(), 1.01 * mesh.volume, water, Vec3::Zero()));
-    EXPECT_FALSE(find_floating_pose(mesh, Eigen::Quaterniond::Identity(), 0.0, water, Vec3::Zero()));
+    const FloatingBody heavy = body_of(mesh, 1.01 * mesh.volume, water);
+    EXPECT_FALSE(find_floating_pose(heavy, Eigen::Quaterniond::Identity(), water));
   }
 }
 

@@ -289,7 +289,7 @@ TEST_F(HydrostaticsProgram, TakesWaterScaleAndOpenPolicyWithAMesh) {
   const auto curve = nlohmann::json::parse(capsized.output);
   ASSERT_EQ(curve.at("points").size(), 3U);
   EXPECT_EQ(curve.at("points").at(2).at("heel"), 40.0);
-  EXPECT_EQ(curve.at("unbalanced_starboard"), 60.0);
+  EXPECT_DOUBLE_EQ(curve.at("unbalanced_starboard").get<double>(), 60.0);
   EXPECT_EQ(curve.at("unbalanced_port"), nullptr);
   EXPECT_TRUE(curve.at("criteria").at("values").empty());
 

@@ -168,7 +168,7 @@ TEST(ConditionSchedule, ReplacesWhatAnEarlierRunLeftBehind) {
   std::vector<double> second;
   for (std::vector<double>* forces : {&first, &second}) {
     Simulation simulation = simulation_of(scene, {.step = kStep, .session_id = forces == &first ? 1 : 2});
-    const std::atomic<bool> never{false};
+    const auto never = [] { return false; };
     const auto outcome = run(simulation, service, 100, never, [&](const Simulation& now) {
       forces->push_back(now.bodies()[0].wrench.force[2]);
       return Expected<void>{};

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hydrodynamics/linear_solver.h"
+#include "hydrodynamics/linear_algebra.h"
 #include "tests/simulation/in_process_run.h"
 #include "tests/support/scene_of.h"
 

@@ -1,6 +1,5 @@
 #include "tests/simulation/in_process_run.h"
 
-#include <atomic>
 #include <stdexcept>
 #include <utility>
 
@@ -14,7 +13,7 @@ Simulation simulation_of(const Scene& scene, const SimulationOptions& options) {
 
 void run_in_process(const Scene& scene, Simulation& simulation, std::int64_t steps,
                     const std::function<void(const Simulation&)>& observe) {
-  const std::atomic<bool> never{false};
+  const auto never = [] { return false; };
   SimulationClient client{InProcessClient(scene)};
   const Expected<RunOutcome> outcome = run(simulation, client, steps, never, [&](const Simulation& now) {
     if (observe) observe(now);

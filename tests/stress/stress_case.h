@@ -1,6 +1,6 @@
 // One row of the stress catalogue during its test. Every measurement is compared with its gate, the largest
 // value allowed; the largest measurement, in units of its gate, goes into the test's record
-// (`--gtest_output=json`), from which scripts/measure_stability makes the table of docs/stability.md.
+// (`--gtest_output=json`), from which scripts/measure stability makes the table of docs/stability.md.
 #pragma once
 
 #include <string>

@@ -13,6 +13,7 @@
 #include <iterator>
 #include <list>
 #include <mutex>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <thread>
@@ -27,19 +28,24 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include "base/unique_fd.h"
-#include "view/live/request_stream.h"
 
 namespace buoyancy::view {
 namespace {
 
 namespace http = boost::beast::http;
 using Request = http::request<http::empty_body>;
+using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
 
 constexpr std::size_t kMaxChunkBytes = 65'536;  // of a resource's body
+constexpr std::size_t kReceivedPartBytes = 4'096;
+constexpr Seconds kLingerTime{0.2};
 
 constexpr const char* kHeaders =  // of every response
     "Connection: close\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n"
@@ -51,18 +57,59 @@ constexpr const char* kHeaders =  // of every response
 // each of many connections.
 constexpr int kSendBufferBytes = 131'072;
 
+Clock::time_point deadline_after(Seconds timeout) {
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
+}
+
+// What a connection does; streams are kept, others may have to make room.
+enum class Phase { kHeader, kResponse, kStream };
+
+// A connection of listen_on().
+struct Connection {
+  explicit Connection(UniqueFd client) : socket(std::move(client)) {}
+
+  // Receives what arrives by the deadline. Returns its size [bytes]; 0: the peer has closed the connection,
+  // or it is shut down; -1: nothing has arrived.
+  ssize_t receive(std::span<char> part, Clock::time_point deadline) const {
+    while (true) {
+      const auto remaining = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+      if (remaining.count() <= 0) return -1;
+      pollfd readable{socket.value(), POLLIN, 0};
+      if (::poll(&readable, 1, static_cast<int>(remaining.count())) > 0) {
+        return std::max<ssize_t>(::recv(socket.value(), part.data(), part.size(), 0), 0);
+      }
+    }
+  }
+
+  // Waits for the write time-out at most. False: the peer has gone or does not read; the response cannot be
+  // continued.
+  bool write(std::string_view bytes) {
+    has_written = true;
+    const ssize_t sent = ::send(socket.value(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    return sent == static_cast<ssize_t>(bytes.size());
+  }
+
+  // Ends the response and lets the peer read the rest of it before the socket is closed.
+  void finish() const {
+    // Closing a socket that holds unread bytes resets the connection, and the peer may lose the response.
+    ::shutdown(socket.value(), SHUT_WR);
+    const auto deadline = deadline_after(kLingerTime);
+    std::array<char, kReceivedPartBytes> ignored{};
+    while (receive(ignored, deadline) > 0) {
+    }
+  }
+
+  UniqueFd socket;
+  bool has_written = false;
+  // Kept by Connections, under its lock.
+  Phase phase = Phase::kHeader;
+  bool stopping = false;
+  std::jthread thread;
+};
+
 // The open connections, in order of arrival, each served by a thread of its own.
 class Connections {
  public:
-  enum class Phase { kHeader, kResponse, kStream };
-  struct Connection {
-    explicit Connection(UniqueFd client) : socket(std::move(client)) {}
-    UniqueFd socket;
-    Phase phase = Phase::kHeader;
-    std::atomic<bool> stopping{false};
-    std::jthread thread;
-  };
-
   // max_connections: more than there can be streams. serve: must not throw.
   Connections(int max_connections, std::function<void(Connection&)> serve)
       : max_connections_(static_cast<std::size_t>(max_connections)), serve_(std::move(serve)) {}
@@ -81,7 +128,7 @@ class Connections {
     ended.swap(ended_);
     std::list<Connection> added;
     Connection& connection = added.emplace_back(std::move(socket));
-    connection.stopping = stopping_;
+    if (stopping_) stop(connection);
     connection.thread = std::jthread([this, self = added.begin()] {
       serve_(*self);
       close(self);
@@ -100,10 +147,15 @@ class Connections {
   void stop_all() {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
-    for (Connection& connection : open_) connection.stopping = true;
+    for (Connection& connection : open_) stop(connection);
   }
 
  private:
+  static void stop(Connection& connection) {
+    connection.stopping = true;
+    ::shutdown(connection.socket.value(), SHUT_RDWR);  // ends every wait of the connection's thread
+  }
+
   void close(std::list<Connection>::iterator connection) {
     // Under the lock, so that evict_one() cannot shut down a reused file descriptor.
     const std::lock_guard lock(mutex_);
@@ -119,9 +171,7 @@ class Connections {
       const auto oldest = std::ranges::find_if(
           open_, [phase](const Connection& other) { return other.phase == phase && !other.stopping; });
       if (oldest == open_.end()) continue;
-      oldest->stopping = true;
-      ::shutdown(oldest->socket.value(), SHUT_RDWR);  // wakes the connection's thread
-      return;
+      return stop(*oldest);
     }
   }
 
@@ -181,7 +231,7 @@ std::vector<std::string> machine_names() {
 }
 
 // Invalid: failed, errno has the reason. address: in numeric form. port: if 0, becomes that of the socket.
-UniqueFd listen_on(const std::string& address, int& port, int backlog) {
+UniqueFd listen_on(const std::string& address, int& port, const PageLimits& limits) {
   addrinfo hints{};
   hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
   hints.ai_socktype = SOCK_STREAM;
@@ -190,22 +240,31 @@ UniqueFd listen_on(const std::string& address, int& port, int backlog) {
   if (::getaddrinfo(address.c_str(), std::to_string(port).c_str(), &hints, &found) != 0) return {};
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owned(found, ::freeaddrinfo);
   UniqueFd listening(::socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  const auto set = [&listening](int level, int option, int value) {
+  const auto set = [&listening](int level, int option, auto value) {
     ::setsockopt(listening.value(), level, option, &value, sizeof value);
   };
   // Not SO_REUSEPORT, which would share the port with another view instead of reporting that it is taken.
   set(SOL_SOCKET, SO_REUSEADDR, 1);
   if (found->ai_family == AF_INET6) set(IPPROTO_IPV6, IPV6_V6ONLY, 0);
-  // Connections inherit these.
+  // Connections inherit these. The first time-out ends a send that blocks; by the second the kernel drops a
+  // peer that acknowledges nothing of what is buffered, even while there is room to buffer more.
+  const auto write_timeout = std::chrono::round<std::chrono::microseconds>(Seconds(limits.write_timeout));
+  set(SOL_SOCKET, SO_SNDTIMEO, timeval{write_timeout.count() / 1'000'000, write_timeout.count() % 1'000'000});
+  set(IPPROTO_TCP, TCP_USER_TIMEOUT, static_cast<unsigned>(write_timeout.count() / 1'000));
   set(SOL_SOCKET, SO_SNDBUF, kSendBufferBytes);
   set(IPPROTO_TCP, TCP_NODELAY, 1);
   if (::bind(listening.value(), found->ai_addr, found->ai_addrlen) != 0) return {};
-  if (::listen(listening.value(), backlog) != 0) return {};
+  if (::listen(listening.value(), limits.connections) != 0) return {};
   sockaddr_in6 bound{};  // the port of a sockaddr_in is at the same place
   socklen_t size = sizeof bound;
   if (::getsockname(listening.value(), reinterpret_cast<sockaddr*>(&bound), &size) != 0) return {};
   port = ntohs(bound.sin6_port);
   return listening;
+}
+
+bool is_complete(const std::string& header, std::size_t from) {
+  from -= std::min<std::size_t>(from, 3);
+  return header.find("\r\n\r\n", from) != std::string::npos || header.find("\n\n", from) != std::string::npos;
 }
 
 // headers: further ones, each with its line end.
@@ -242,7 +301,7 @@ class PageServer::Http {
         broadcaster_(broadcaster),
         metrics_(metrics),
         limits_(limits),
-        connections_(limits.connections, [this](Connections::Connection& client) { serve(client); }) {
+        connections_(limits.connections, [this](Connection& client) { serve(client); }) {
     host_names_.emplace_back("localhost");
     if (!is_loopback(address_)) std::ranges::copy(machine_names(), std::back_inserter(host_names_));
     for (std::string& name : host_names_) name = in_lower_case(std::move(name));
@@ -254,18 +313,14 @@ class PageServer::Http {
   ~Http() {
     thread_.request_stop();
     ::shutdown(listening_.value(), SHUT_RDWR);  // wakes the thread
-    connections_.stop_all();
     broadcaster_.close();
+    connections_.stop_all();
     thread_.join();
   }
 
   bool serving() const { return serving_; }
 
  private:
-  using Seconds = std::chrono::duration<double>;
-  using Connection = Connections::Connection;
-  using Phase = Connections::Phase;
-
   void accept_connections(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       UniqueFd client(::accept4(listening_.value(), nullptr, nullptr, SOCK_CLOEXEC));
@@ -285,42 +340,48 @@ class PageServer::Http {
   }
 
   void serve(Connection& client) {
-    RequestStream stream(
-        client.socket.value(),
-        {limits_.max_header_bytes, Seconds(limits_.header_timeout), Seconds(limits_.write_timeout)},
-        client.stopping);
     try {
-      respond(client, stream);
+      respond(client);
     } catch (const std::exception&) {
-      if (!stream.has_written()) stream.write(failure_);
+      if (!client.has_written) client.write(failure_);
     }
     connections_.set_phase(client, Phase::kResponse);  // may be evicted again after a stream
-    stream.finish();
+    client.finish();
   }
 
-  void respond(Connection& client, RequestStream& stream) {
-    const RequestStream::HeaderResult header = stream.read_header();
-    if (!connections_.set_phase(client, Phase::kResponse)) return;
-    switch (header) {
-      case RequestStream::HeaderResult::kComplete: {
-        http::request_parser<http::empty_body> parser;
-        parser.header_limit(UINT32_MAX);  // limited already
-        boost::system::error_code error;
-        parser.put(boost::asio::buffer(stream.header()), error);
-        if (parser.is_header_done()) return respond(client, stream, parser.get());
-        stream.write(text_response("400 Bad Request", "This is no complete HTTP/1.1 request."));
-        break;
-      }
-      case RequestStream::HeaderResult::kTooLarge:
-        stream.write(text_response(
+  void respond(Connection& client) {
+    std::string header;
+    const std::string refusal = read_header(client, header);
+    if (!connections_.set_phase(client, Phase::kResponse) || header.empty()) return;
+    if (!refusal.empty()) {
+      client.write(refusal);
+      return;
+    }
+    http::request_parser<http::empty_body> parser;
+    parser.header_limit(UINT32_MAX);  // limited already
+    boost::system::error_code error;
+    parser.put(boost::asio::buffer(header), error);
+    if (parser.is_header_done()) return respond(client, parser.get());
+    client.write(text_response("400 Bad Request", "This is no complete HTTP/1.1 request."));
+  }
+
+  // Reads the header of a request, with what follows it so far; less if the peer closes before its end.
+  // Returns the response to one that is too large or too slow; otherwise empty.
+  std::string read_header(const Connection& client, std::string& header) const {
+    const auto deadline = deadline_after(Seconds(limits_.header_timeout));
+    std::array<char, kReceivedPartBytes> part{};
+    while (true) {
+      const ssize_t size = client.receive(part, deadline);
+      if (size < 0) return text_response("408 Request Timeout", "The request did not arrive in time.");
+      if (size == 0) return "";
+      const std::size_t before = header.size();
+      header.append(part.data(), static_cast<std::size_t>(size));
+      if (is_complete(header, before)) return "";
+      if (header.size() > limits_.max_header_bytes) {
+        return text_response(
             "431 Request Header Fields Too Large",
-            "The header of a request is limited to " + std::to_string(limits_.max_header_bytes) + " bytes."));
-        break;
-      case RequestStream::HeaderResult::kTooSlow:
-        stream.write(text_response("408 Request Timeout", "The request did not arrive in time."));
-        break;
-      case RequestStream::HeaderResult::kEmpty:
-        break;
+            "The header of a request is limited to " + std::to_string(limits_.max_header_bytes) + " bytes.");
+      }
     }
   }
 
@@ -335,59 +396,59 @@ class PageServer::Http {
     return !address.empty() && (!is_loopback(address_) || is_loopback(address));
   }
 
-  void respond(Connection& client, RequestStream& stream, const Request& request) {
+  void respond(Connection& client, const Request& request) {
     if (!is_host_allowed(request)) {
-      return refuse(stream, request, "403 Forbidden",
+      return refuse(client, request, "403 Forbidden",
                     "The Host of this request is no name of this view. Open http://" + url_host(address_) +
                         " with the port, or start buoyancy-view with --host and the name.");
     }
     if (request.method() != http::verb::get) {
-      return refuse(stream, request, "405 Method Not Allowed", "Only GET is supported.", "Allow: GET\r\n");
+      return refuse(client, request, "405 Method Not Allowed", "Only GET is supported.", "Allow: GET\r\n");
     }
     const std::string target(request.target());
     const std::string path = target.substr(0, target.find('?'));
-    if (path == "/events") return stream_events(client, stream, request);
+    if (path == "/events") return stream_events(client, request);
     if (path == "/metrics" && metrics_ != nullptr) {
-      return send(stream, "text/plain; version=0.0.4; charset=utf-8", metrics_->text());
+      return send(client, "text/plain; version=0.0.4; charset=utf-8", metrics_->text());
     }
     const auto found = resources_.find(path);
     if (found == resources_.end())
-      return refuse(stream, request, "404 Not Found", "Not found; the page is at /.");
-    send(stream, found->second.content_type, found->second.body);
+      return refuse(client, request, "404 Not Found", "Not found; the page is at /.");
+    send(client, found->second.content_type, found->second.body);
   }
 
-  static void send(RequestStream& stream, const std::string& content_type, std::string_view body) {
-    bool reads = stream.write(head("200 OK", "Content-Type: " + content_type + "\r\nContent-Length: " +
+  static void send(Connection& client, const std::string& content_type, std::string_view body) {
+    bool reads = client.write(head("200 OK", "Content-Type: " + content_type + "\r\nContent-Length: " +
                                                  std::to_string(body.size()) + "\r\n"));
     for (std::size_t sent = 0; reads && sent < body.size(); sent += kMaxChunkBytes)
-      reads = stream.write(body.substr(sent, kMaxChunkBytes));
+      reads = client.write(body.substr(sent, kMaxChunkBytes));
   }
 
   // A response to HEAD has no body.
-  static void refuse(RequestStream& stream, const Request& request, const std::string& status,
+  static void refuse(Connection& client, const Request& request, const std::string& status,
                      const std::string& text, const std::string& headers = "") {
     const std::string response = text_response(status, text, headers);
     const bool head_only = request.method() == http::verb::head;
-    stream.write(std::string_view(response).substr(0, response.size() - (head_only ? text.size() + 1 : 0)));
+    client.write(std::string_view(response).substr(0, response.size() - (head_only ? text.size() + 1 : 0)));
   }
 
-  void stream_events(Connection& client, RequestStream& stream, const Request& request) {
+  void stream_events(Connection& client, const Request& request) {
     SnapshotBroadcaster::Listener listener(broadcaster_, limits_.streams);
     if (!listener.admitted()) {
-      return refuse(stream, request, "503 Service Unavailable",
+      return refuse(client, request, "503 Service Unavailable",
                     std::to_string(limits_.streams) + " pages are already connected to this view; close one.",
                     "Retry-After: 5\r\n");
     }
     if (!connections_.set_phase(client, Phase::kStream)) return;
     const bool chunked = request.version() >= 11;  // without chunks, a stream ends with its connection
-    bool reads = stream.write(head("200 OK", std::string("Content-Type: text/event-stream\r\n") +
+    bool reads = client.write(head("200 OK", std::string("Content-Type: text/event-stream\r\n") +
                                                  (chunked ? "Transfer-Encoding: chunked\r\n" : "")));
     bool first = true;
     SnapshotBroadcaster::Text sea;
     while (reads) {
       const SnapshotBroadcaster::Published published = listener.next();
       if (published.number == 0) {
-        if (chunked) stream.write(boost::beast::buffers_to_string(http::make_chunk_last()));
+        if (chunked) client.write(boost::beast::buffers_to_string(http::make_chunk_last()));
         return;
       }
       std::string events;
@@ -399,7 +460,7 @@ class PageServer::Http {
       }
       events += "data: " + *published.snapshot + "\n\n";
       if (chunked) events = boost::beast::buffers_to_string(http::make_chunk(boost::asio::buffer(events)));
-      reads = stream.write(events);
+      reads = client.write(events);
     }
   }
 
@@ -431,7 +492,7 @@ Expected<std::unique_ptr<PageServer>> PageServer::start(const std::string& addre
                                                         const Metrics* metrics) {
   if (Expected<void> checked = check_listen_address(address); !checked)
     return tl::unexpected(checked.error());
-  UniqueFd listening = listen_on(address, port, limits.connections);
+  UniqueFd listening = listen_on(address, port, limits);
   if (!listening.valid()) {
     return make_error(
         {"port " + std::to_string(port) + " of " + address, std::generic_category().message(errno),

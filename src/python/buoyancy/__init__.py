@@ -9,7 +9,7 @@ Mesh and Scene evaluate one pose or many in this process, in water at rest or in
 to buoyancyd over LCM. read_log reads what was recorded.
 
 Units are SI. World frame W, body frame B; position is that of B's origin in W, quaternion (w, x, y, z) rotates B to W.
-Arrays are numpy arrays of float64, or memoryviews where numpy is not installed. docs/python.md describes the module.
+Arrays are numpy arrays of float64, or memoryviews where numpy is not installed. docs/libraries.md describes the module.
 """
 from ._core import (
     Body,

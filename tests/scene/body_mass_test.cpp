@@ -1,4 +1,4 @@
-#include "scene/loaded_mass.h"
+#include "scene/body_mass.h"
 
 #include <numbers>
 #include <string>
@@ -48,18 +48,18 @@ void expect_sum(const Scene& scene, const Vec3& up_B, double mass, const Vec3& c
   EXPECT_LE((sum.inertia_B - expected).norm(), tolerance * expected.norm());
 }
 
-TEST(LoadedMass, AddsAFullTankAsASolid) {
+TEST(BodyMass, AddsAFullTankAsASolid) {
   const Vec3 tilted = Vec3(0.3, -0.5, 0.7).normalized();
   expect_sum(box_with(tank(1.0)), tilted, 2400.0, {1, 2, 3}, inertia_of_box(2400.0, {3, 1, 1}), 1e-13);
 }
 
-TEST(LoadedMass, AddsAPartlyFilledTankAsItsLiquidLies) {
+TEST(BodyMass, AddsAPartlyFilledTankAsItsLiquidLies) {
   const Scene scene = box_with(tank(0.25));
   expect_sum(scene, Vec3::UnitZ(), 600.0, {1, 2, 2.625}, inertia_of_box(600.0, {3, 1, 0.25}), 1e-12);
   expect_sum(scene, -Vec3::UnitY(), 600.0, {1, 2.375, 3}, inertia_of_box(600.0, {3, 0.25, 1}), 1e-12);
 }
 
-TEST(LoadedMass, AddsATiltedTankAsAPrism) {
+TEST(BodyMass, AddsATiltedTankAsAPrism) {
   // Half full at 45 degrees the liquid is a right triangle, with its legs along y and z.
   const Scene scene = box_with(tank(0.5));
   Mat3 second = Mat3::Zero();  // of the triangle's section, per area: 1/18 and -1/36 of the legs' squares
@@ -70,7 +70,7 @@ TEST(LoadedMass, AddsATiltedTankAsAPrism) {
   expect_sum(scene, Vec3(0, 1, 1).normalized(), 1200.0, {1, 2 - 1.0 / 6.0, 3 - 1.0 / 6.0}, inertia, 1e-4);
 }
 
-TEST(LoadedMass, LeavesEmptyTanksOut) {
+TEST(BodyMass, LeavesEmptyTanksOut) {
   const Scene scene = box_with(tank(0.0));
   const BodyMass own = mass_of_body(scene.bodies().front(), scene.water()).value();
   const BodyMass sum = mass_with_liquids(scene.bodies().front(), own, nullptr, Vec3::UnitZ());
@@ -79,7 +79,7 @@ TEST(LoadedMass, LeavesEmptyTanksOut) {
   EXPECT_EQ(sum.inertia_B, own.inertia_B);
 }
 
-TEST(LoadedMass, StiffnessOfWeightsIsTheirDerivative) {
+TEST(BodyMass, StiffnessOfWeightsIsTheirDerivative) {
   const Scene scene =
       box_with(tank(0.4, "orientation = [0.9, 0.1, 0.2, 0.3]\n") +
                "[[body.tank]]\nshape = { type = \"sphere\", radius = 0.3, segments = 20 }\nfill = 0.7\n");

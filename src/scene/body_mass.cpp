@@ -1,16 +1,22 @@
-#include "scene/loaded_mass.h"
+#include "scene/body_mass.h"
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "base/format.h"
 #include "hydrostatics/displacement_moments.h"
 #include "hydrostatics/immersed_part.h"
 #include "scene/floating_bodies.h"
 
 namespace buoyancy {
 namespace {
+
+double given_density(const DynamicsSpec& spec, const Water& water) {
+  return spec.density.value_or(0.5 * water.density);
+}
 
 Mat3 inertia_from(const Mat3& second_moments) {
   return second_moments.trace() * Mat3::Identity() - second_moments;
@@ -50,6 +56,63 @@ Mat3 inertia_of_point(double mass, const Vec3& distance) {
 
 }  // namespace
 
+std::optional<double> known_mass(const Body& body, const Water& water) {
+  if (body.dynamics.mass) return body.dynamics.mass;
+  if (body.prepared_mesh->mesh.is_open()) return std::nullopt;
+  return given_density(body.dynamics, water) * body.prepared_mesh->mass_properties.volume;
+}
+
+std::optional<double> known_density(const Body& body, const Water& water) {
+  if (!body.dynamics.mass || body.dynamics.density) return given_density(body.dynamics, water);
+  if (body.prepared_mesh->mesh.is_open()) return std::nullopt;
+  return *body.dynamics.mass / body.prepared_mesh->mass_properties.volume;
+}
+
+std::optional<Vec3> given_center_of_mass(const DynamicsSpec& dynamics, const PreparedMesh& prepared) {
+  if (dynamics.center_of_mass_B) return dynamics.center_of_mass_B;
+  if (prepared.mesh.is_open() || !(dynamics.mass || dynamics.density)) return std::nullopt;
+  return prepared.mass_properties.centroid_B;
+}
+
+Expected<BodyMass> mass_of_body(const Body& body, const Water& water) {
+  const DynamicsSpec& spec = body.dynamics;
+  const MassProperties& enclosed = body.prepared_mesh->mass_properties;
+  if (body.prepared_mesh->mesh.is_open()) {
+    std::string missing;
+    for (const auto& [key, given] : {std::pair{"mass", spec.mass.has_value()},
+                                     {"center_of_mass", spec.center_of_mass_B.has_value()},
+                                     {"inertia", spec.inertia_B.has_value()}}) {
+      if (!given) missing += (missing.empty() ? "" : ", ") + std::string(key);
+    }
+    if (!missing.empty()) {
+      return make_error({"body " + std::to_string(body.id) + " (" + body.name + ")",
+                         "an open mesh without " + missing,
+                         "mass, center_of_mass and inertia in [body.client]",
+                         "a simulation needs them, and an open mesh encloses no volume to derive them from",
+                         "Set what is missing, or close the mesh"});
+    }
+  }
+  BodyMass result;
+  result.mass = *known_mass(body, water);
+  result.center_of_mass_B = spec.center_of_mass_B.value_or(enclosed.centroid_B);
+  result.inertia_B =
+      spec.inertia_B ? *spec.inertia_B : Mat3(enclosed.inertia_B * (result.mass / enclosed.volume));
+  if (!(result.mass > 0.0) || !std::isfinite(result.mass) || !result.inertia_B.allFinite()) {
+    return make_error({"body " + std::to_string(body.id) + " (" + body.name + ")",
+                       "mass = " + format_number(result.mass, 6) + " kg",
+                       "a mass above 0, and with its inertia in double's range",
+                       "a density of " + format_number(given_density(spec, water), 6) +
+                           " kg/m^3 times an enclosed volume of " + format_number(enclosed.volume, 6) +
+                           " m^3",
+                       "Set mass or density in [body.client]"});
+  }
+  return result;
+}
+
+Weights weights_of(const BodyMass& own, const LiquidSum& liquids, const Vec3& about_B) {
+  return {own.mass + liquids.mass, own.mass * (own.center_of_mass_B - about_B) + liquids.moment};
+}
+
 BodyMass mass_with_liquids(const Body& body, const BodyMass& own, const BodyCondition* condition,
                            const Vec3& up_B) {
   const std::vector<Tank> tanks = tanks_of(body, condition);
@@ -86,11 +149,12 @@ Mat6 stiffness_of_weights(const BodyMass& own, std::span<const Tank> tanks, cons
     add_liquid(tank, liquid, center_B, liquids);
     add_free_surface(tank, liquid, liquids);
   }
-  DisplacementMoments<double> weights;
-  weights.volume = own.mass + liquids.mass;
-  weights.moment = own.mass * (own.center_of_mass_B - center_B) + liquids.moment;
-  weights.waterplane_second_moments = liquids.free_surface;
-  return -water.gravity * stiffness(weights.rotated(R_WB), water.up_W);
+  const Weights weights = weights_of(own, liquids, center_B);
+  DisplacementMoments<double> moments;
+  moments.volume = weights.mass;
+  moments.moment = weights.moment;
+  moments.waterplane_second_moments = liquids.free_surface;
+  return -water.gravity * stiffness(moments.rotated(R_WB), water.up_W);
 }
 
 }  // namespace buoyancy
