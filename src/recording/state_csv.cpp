@@ -37,11 +37,12 @@ Expected<std::size_t> StateCsvReader::parse_header(std::string_view text, const 
     if (c != ' ' && c != '\t' && c != '\r') names += c;
   }
   const std::string pose = csv_header<BodyState>(kPoseFields);
-  const std::string twist = "," + csv_columns<BodyState>(kTwistFields);
+  const std::string twist = csv_columns<BodyState>(kTwistFields);
   if (names == pose) return kPoseColumns;
-  if (names == pose + twist) return kTwistColumns;
-  return make_error({path.string() + ":1", "header " + quote(text),
-                     "'" + pose + "', optionally followed by '" + twist + "'",
+  if (names == pose + ',' + twist) return kTwistColumns;
+  std::string expected = "'";
+  expected.append(pose).append("', optionally followed by ',").append(twist).append("'");
+  return make_error({path.string() + ":1", "header " + quote(text), expected,
                      "the file has no header, or its columns are in another order", ""});
 }
 
