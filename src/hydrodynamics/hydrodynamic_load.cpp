@@ -161,13 +161,14 @@ HydrodynamicMatrices HydrodynamicModel::matrices(const HydrodynamicState& state)
   HydrodynamicMatrices matrices;
   const Mat3& R_WB = state.motion.R_WB;
   Mat6 damping_B = Mat6::Zero();  // about the reference point
-  if (coefficients_.drag) {
+  // What is dry is left out, since a factor of 0 times a velocity that overflows is NaN.
+  if (coefficients_.drag && state.at_drag.immersion.value > 0.0) {
     const DragCoefficients& drag = *coefficients_.drag;
     const auto& [water, s] = state.at_drag;
     const Vec6 nu = relative_twist_B(state.motion, drag.center_B, water.velocity_W);
     damping_B = matrix_at(s.value * drag_matrix(drag, nu, 2.0), reference_B_ - drag.center_B);
   }
-  if (coefficients_.added_mass) {
+  if (coefficients_.added_mass && state.at_added_mass.immersion.value > 0.0) {
     const AddedMassCoefficients& added = *coefficients_.added_mass;
     const auto& [water, s] = state.at_added_mass;
     const Vec6 nu = relative_twist_B(state.motion, added.center_B, water.velocity_W);

@@ -273,10 +273,16 @@ TEST(HydrodynamicLoad, DryBodyHasNone) {
   const HydrodynamicModel model(random_coefficients(random), random_vec3(random));
   HydrodynamicState state = random_state(random);
   state.at_drag.immersion = state.at_added_mass.immersion = {0.0, 0.0};
-  const HydrodynamicLoad load = model.load(state);
-  EXPECT_EQ(total(load), Vec6::Zero());
-  EXPECT_EQ(load.force_error_bound, 0.0);
-  EXPECT_EQ(load.torque_error_bound, 0.0);
+  for (const double velocity : {1.0, 5e306}) {
+    state.motion.velocity_W = Vec3(velocity, 0.0, -velocity);
+    const HydrodynamicLoad load = model.load(state);
+    EXPECT_EQ(total(load), Vec6::Zero());
+    EXPECT_EQ(load.force_error_bound, 0.0);
+    EXPECT_EQ(load.torque_error_bound, 0.0);
+    const HydrodynamicMatrices matrices = model.matrices(state);
+    EXPECT_EQ(matrices.damping_W, Mat6::Zero());
+    EXPECT_EQ(matrices.added_mass_W, Mat6::Zero());
+  }
 }
 
 }  // namespace
