@@ -1,6 +1,5 @@
 #include "service/replay/replay_summary.h"
 
-#include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
 namespace buoyancy::service {
@@ -52,8 +51,8 @@ std::string comparison_text(const ReplayComparison& comparison) {
   return text;
 }
 
-nlohmann::ordered_json comparison_json(const ReplayComparison& comparison) {
-  nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
+Json comparison_json(const ReplayComparison& comparison) {
+  Json bodies = Json::array();
   for (const auto& [id, body] : comparison.bodies()) {
     bodies.push_back({{"body_id", id},
                       {"responses", body.responses},
@@ -120,9 +119,9 @@ std::string summary_text(const ReplaySummary& summary, const ReplayComparison* c
   return text;
 }
 
-nlohmann::ordered_json summary_to_json(const ReplaySummary& summary) {
+Json summary_to_json(const ReplaySummary& summary) {
   const ServiceCounters& counters = summary.counters;
-  nlohmann::ordered_json bodies;
+  Json bodies;
   for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
     bodies[to_string(static_cast<BodyStatus>(i))] = counters.bodies[i];
   }
@@ -146,13 +145,13 @@ nlohmann::ordered_json summary_to_json(const ReplaySummary& summary) {
           {"requests_per_second", per_second(counters.requests, summary.seconds)}};
 }
 
-ReplaySummary summary_from_json(const nlohmann::ordered_json& json) {
+ReplaySummary summary_from_json(const Json& json) {
   ReplaySummary summary;
   ServiceCounters& counters = summary.counters;
   json.at("requests").get_to(counters.requests);
   json.at("computed").get_to(counters.computed);
   json.at("retries").get_to(counters.retries);
-  const nlohmann::ordered_json& rejected = json.at("rejected");
+  const Json& rejected = json.at("rejected");
   rejected.at("truncated").get_to(counters.rejected_truncated);
   rejected.at("fingerprint").get_to(counters.rejected_fingerprint);
   rejected.at("count").get_to(counters.rejected_count);
@@ -170,11 +169,11 @@ ReplaySummary summary_from_json(const nlohmann::ordered_json& json) {
 }
 
 std::string summary_json(const ReplaySummary& summary, const ReplayComparison* comparison) {
-  nlohmann::ordered_json json = summary_to_json(summary);
+  Json json = summary_to_json(summary);
   if (summary.requests && summary.requests->missing() > 0)
     json["requests_not_recorded"] = summary.requests->missing();
   if (comparison != nullptr) json["compared"] = comparison_json(*comparison);
-  return json.dump(2) + "\n";
+  return json_lines(json);
 }
 
 }  // namespace buoyancy::service
