@@ -5,9 +5,9 @@
 #include <utility>
 
 #include <CLI/App.hpp>
-#include <nlohmann/json.hpp>
 
 #include "base/format.h"
+#include "base/json.h"
 #include "base/text_file.h"
 #include "cli/command_line.h"
 #include "cli/progress_bar.h"
@@ -47,10 +47,6 @@ std::optional<Error> missing_heels(const RightingCurve& curve) {
   return no_balance(heels + "; there are results only between it and heel 0");
 }
 
-std::string text_of(const nlohmann::ordered_json& json) {
-  return json.dump(2) + "\n";
-}
-
 PageSubject page_subject(const LoadedBody& loaded, const HydrostaticsPlan& plan) {
   return {.name = loaded.name, .body = &loaded.body, .water = &loaded.water(), .axes = plan.table.axes};
 }
@@ -67,7 +63,7 @@ Output equilibrium_output(const LoadedBody& loaded, const HydrostaticsOptions& o
   };
   const Equilibria found = find_equilibria(loaded.body, loaded.water(), search);
   progress.clear();
-  return {options.json ? text_of(equilibria_json(found)) : equilibria_text(found), equilibria_csv(found),
+  return {options.json ? json_lines(equilibria_json(found)) : equilibria_text(found), equilibria_csv(found),
           three.empty() ? "" : equilibria_page(page_subject(loaded, plan), found, three)};
 }
 
@@ -93,7 +89,7 @@ Expected<Output> table_output(const LoadedBody& loaded, const HydrostaticsOption
   }
   progress.clear();
   return Output{
-      options.json ? text_of(table_json(*table, rows)) : table_text(*table, rows), table_csv(rows),
+      options.json ? json_lines(table_json(*table, rows)) : table_text(*table, rows), table_csv(rows),
       three.empty() ? "" : table_page(page_subject(loaded, plan), *table, rows, plan.drafts.size(), three)};
 }
 
@@ -106,7 +102,7 @@ Expected<Output> righting_output(const LoadedBody& loaded, const HydrostaticsOpt
   progress.clear();
   if (!results) return make_error(no_balance("0 degrees"));
   if (results->curve.points.empty()) return tl::unexpected(*missing_heels(results->curve));
-  return Output{options.json ? text_of(righting_json(*results)) : righting_text(*results),
+  return Output{options.json ? json_lines(righting_json(*results)) : righting_text(*results),
                 righting_csv(*results),
                 three.empty() ? "" : righting_page(page_subject(loaded, plan), *results, plan.arms, three),
                 missing_heels(results->curve)};

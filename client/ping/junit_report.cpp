@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <span>
 
+#include "base/format.h"
 #include "client/ping/ping_report.h"
 #include "recording/record_writer.h"
 #include "recording/staged_file.h"
@@ -67,8 +68,7 @@ std::vector<TestCase> test_cases(const PingTask& task, const PingResult& result)
                    std::string(to_string(check)), Outcome::kPassed, ""};
       if (compared.failed > 0) {
         now.outcome = Outcome::kFailed;
-        now.message = std::to_string(compared.failed) + " of " + std::to_string(compared.compared) +
-                      " replies differ; " + compared.failure;
+        now.message = describe_check(compared);
       } else if (compared.compared == 0) {
         now.outcome = Outcome::kSkipped;
         now.message = "nothing was compared";
@@ -86,11 +86,7 @@ std::string format_seconds(double seconds) {
 }
 
 void append_attribute(std::string& text, std::string_view name, std::string_view value) {
-  text += ' ';
-  text += name;
-  text += "=\"";
-  text += escape_xml(value);
-  text += '"';
+  text += format_text(" {}=\"{}\"", name, escape_xml(value));
 }
 
 void append_property(std::string& text, std::string_view name, std::string_view value) {
@@ -145,11 +141,7 @@ std::string to_junit(const PingTask& task, const PingResult& result) {
     if (now.outcome == Outcome::kSkipped) ++skipped;
   }
   std::string causes;
-  for (const std::string& cause : result.likely_causes) {
-    causes += "likely cause: ";
-    causes += cause;
-    causes += '\n';
-  }
+  for (const std::string& cause : result.likely_causes) causes += format_text("likely cause: {}\n", cause);
   std::string totals;
   append_attribute(totals, "name", "buoyancy-ping");
   append_attribute(totals, "tests", std::to_string(cases.size()));
@@ -157,11 +149,9 @@ std::string to_junit(const PingTask& task, const PingResult& result) {
   append_attribute(totals, "errors", "0");
   append_attribute(totals, "skipped", std::to_string(skipped));
   append_attribute(totals, "time", format_seconds(result.seconds));
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites";
-  text += totals;
-  text += ">\n  <testsuite";
-  text += totals;
-  text += ">\n    <properties>\n";
+  std::string text = format_text(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites{}>\n  <testsuite{}>\n    <properties>\n",
+      totals, totals);
   append_property(text, "scene", task.scene.name());
   append_property(text, "seed", std::to_string(task.seed));
   append_property(text, "lcm_url", result.url);
@@ -181,9 +171,7 @@ std::string to_junit(const PingTask& task, const PingResult& result) {
     text += now.outcome == Outcome::kFailed ? ">\n      <failure" : ">\n      <skipped";
     append_attribute(text, "message", now.message);
     if (now.outcome == Outcome::kFailed && !causes.empty()) {
-      text += '>';
-      text += escape_xml(causes);
-      text += "</failure>\n";
+      text += format_text(">{}</failure>\n", escape_xml(causes));
     } else {
       text += "/>\n";
     }

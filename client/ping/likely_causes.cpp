@@ -125,18 +125,10 @@ std::optional<double> force_ratio(const Samples& samples) {
 }
 
 std::string describe_weight(const Water& water, double ratio) {
-  std::string text = "the service has another density or gravity: their product is ";
-  text += format_number(ratio, 6);
-  text += " times that of this scene, as with a density of ";
-  text += format_number(ratio * water.density, 6);
-  text += " instead of ";
-  text += format_number(water.density, 6);
-  text += " kg/m^3, or a gravity of ";
-  text += format_number(ratio * water.gravity, 6);
-  text += " instead of ";
-  text += format_number(water.gravity, 6);
-  text += " m/s^2";
-  return text;
+  return format_text(
+      "the service has another density or gravity: their product is {:6} times that of this scene, as with a "
+      "density of {:6} instead of {:6} kg/m^3, or a gravity of {:6} instead of {:6} m/s^2",
+      ratio, ratio * water.density, water.density, ratio * water.gravity, water.gravity);
 }
 
 // The direction of all forces that are buoyancy alone; nullopt: they have none in common, or it is the
@@ -218,14 +210,9 @@ void add_mesh_causes(const Samples& submerged, std::vector<std::string>& causes)
           if (sample.body != &body) return std::nullopt;
           return sample.received.submerged_volume;
         });
-    std::string cause = "the service has another mesh, shape or scale for body ";
-    cause += std::to_string(body.id);
+    std::string cause = format_text("the service has another mesh, shape or scale for body {}", body.id);
     if (other && *other > 0.0) {
-      cause += ": fully submerged it displaces ";
-      cause += format_number(*other, 6);
-      cause += " m^3 instead of ";
-      cause += format_number(volume, 6);
-      cause += " m^3";
+      cause += format_text(": fully submerged it displaces {:6} m^3 instead of {:6} m^3", *other, volume);
     } else {
       cause += ", or another level or up: where it is fully submerged here, it is not there";
     }
@@ -246,8 +233,10 @@ void add_volume_causes(const Scene& scene, const Samples& samples, std::vector<s
   }
   if (at_rest) {
     if (const std::optional<double> level = other_level(scene, differing)) {
-      causes.push_back("the service has another water level: " + format_number(*level, 6) + " m instead of " +
-                       format_number(scene.water().level, 6) + " m would give the volumes that it computes");
+      causes.push_back(format_text(
+          "the service has another water level: {:6} m instead of {:6} m would give the volumes that it "
+          "computes",
+          *level, scene.water().level));
       return;
     }
   }

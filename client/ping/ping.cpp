@@ -166,8 +166,8 @@ class Run {
                               pluralize(task_.retry_policy.max_retries, "retry", "retries");
     if (reply.wrenches.empty()) {
       if (silent_++ > 0) return;
-      std::string message = "request " + std::to_string(seq) + ": no response" + after + " on " + link.url();
-      message += ", channels " + task_.link.states_channel + " and " + task_.link.wrenches_channel;
+      std::string message = format_text("request {}: no response{} on {}, channels {} and {}", seq, after,
+                                        link.url(), task_.link.states_channel, task_.link.wrenches_channel);
       if (send_error_) message += "; sending fails: " + send_error_->message();
       if (const std::int64_t dropped = link.packets_dropped(); dropped > 0) {
         message += "; the kernel dropped " + pluralize(dropped, "packet", "packets") +
@@ -182,17 +182,12 @@ class Run {
     const auto missing = [&](bool& awaited, const ByteVector& bytes, const char* name,
                              const std::string& channel) {
       if (!awaited || !bytes.empty()) return;
-      std::string message = "request " + std::to_string(seq);
-      message += ": a response, but no ";
-      message += name;
-      message += after;
-      message += " on channel ";
-      message += channel;
-      fail(kOutputsCheck, message);
-      std::string cause = "the service's scene does not list \"";
-      cause += name;
-      cause += "\" among the outputs of these bodies, or it publishes them on another channel";
-      add_cause(cause);
+      fail(kOutputsCheck,
+           format_text("request {}: a response, but no {}{} on channel {}", seq, name, after, channel));
+      add_cause(
+          format_text("the service's scene does not list \"{}\" among the outputs of these bodies, or it "
+                      "publishes them on another channel",
+                      name));
       awaited = false;
     };
     missing(awaited_.hydrostatics, reply.hydrostatics, "hydrostatics", task_.link.hydrostatics_channel);
@@ -205,15 +200,13 @@ class Run {
   void add_cause(std::string_view cause) { result_.likely_causes.emplace_back(cause); }
 
   void report_damaged(const UndecodableMessages& damaged) {
-    std::string message = pluralize(damaged.count, "message", "messages") +
-                          " could not be decoded; the first, of " + std::to_string(damaged.first_size) +
-                          " bytes on channel " + damaged.first_channel;
+    std::string where;
     if (damaged.first_channel == task_.link.wrenches_channel) {
-      message += ", where a response has " + std::to_string(response_size(task_.scene.bodies().size()));
+      where = ", where a response has " + std::to_string(response_size(task_.scene.bodies().size()));
     }
-    message += ": ";
-    message += to_string(damaged.first_error);
-    fail(kDecodableCheck, message);
+    fail(kDecodableCheck, format_text("{} could not be decoded; the first, of {} bytes on channel {}{}: {}",
+                                      pluralize(damaged.count, "message", "messages"), damaged.first_size,
+                                      damaged.first_channel, where, to_string(damaged.first_error)));
     add_cause(
         damaged.first_error == DecodeError::kFingerprint
             ? "another program, or another version of the service, publishes on this channel, or something "

@@ -4,12 +4,11 @@
 #include <array>
 #include <cstdio>
 
-#include <nlohmann/json.hpp>
+#include "base/format.h"
+#include "base/json.h"
 
 namespace buoyancy::ping {
 namespace {
-
-using nlohmann::ordered_json;
 
 constexpr std::size_t kMaxBodiesShown = 20;
 
@@ -32,24 +31,6 @@ bool has_failed(const BodyChecks& body) {
   return std::ranges::any_of(body.results, [](const CheckResult& check) { return check.failed > 0; });
 }
 
-std::string describe_body(const BodyChecks& body) {
-  std::string text = "body ";
-  text += std::to_string(body.body_id);
-  text += " (";
-  text += body.name;
-  text += ')';
-  return text;
-}
-
-std::string describe_check(const CheckResult& check) {
-  std::string text = std::to_string(check.failed);
-  text += " of ";
-  text += std::to_string(check.compared);
-  text += " replies differ; ";
-  text += check.failure;
-  return text;
-}
-
 const char* verdict(const PingResult& result) {
   if (result.agrees() && result.checks.identical() < result.checks.replies()) {
     return "The service agrees with this program within the published bounds, but not to the last bit: it "
@@ -69,6 +50,10 @@ const char* mode_name(ServiceMode mode) {
 
 }  // namespace
 
+std::string describe_check(const CheckResult& check) {
+  return format_text("{} of {} replies differ; {}", check.failed, check.compared, check.failure);
+}
+
 std::vector<std::string> failure_lines(const PingResult& result) {
   constexpr std::size_t kMaxChecksShown = 20;
   std::vector<std::string> lines;
@@ -77,12 +62,8 @@ std::vector<std::string> failure_lines(const PingResult& result) {
   for (const BodyChecks& body : result.checks.bodies()) {
     for (const Check check : kAllChecks) {
       if (body.at(check).failed == 0 || ++failed > kMaxChecksShown) continue;
-      std::string line = describe_body(body);
-      line += ", ";
-      line += to_string(check);
-      line += ": ";
-      line += describe_check(body.at(check));
-      lines.push_back(std::move(line));
+      lines.push_back(format_text("body {} ({}), {}: {}", body.body_id, body.name, to_string(check),
+                                  describe_check(body.at(check))));
     }
   }
   if (failed > kMaxChecksShown) {
@@ -145,9 +126,9 @@ std::string to_text(const PingTask& task, const PingResult& result) {
 }
 
 std::string to_json(const PingTask& task, const PingResult& result) {
-  ordered_json bodies = ordered_json::array();
+  Json bodies = Json::array();
   for (const BodyChecks& body : result.checks.bodies()) {
-    ordered_json checks;
+    Json checks;
     for (const Check check : kAllChecks) {
       const CheckResult& of = body.at(check);
       std::string key(to_string(check));
@@ -163,7 +144,7 @@ std::string to_json(const PingTask& task, const PingResult& result) {
                       {"center", body.largest.center},
                       {"checks", checks}});
   }
-  ordered_json service = nullptr;
+  Json service = nullptr;
   if (result.service.status) {
     const ServiceStatus& status = *result.service.status;
     service = {{"version", status.version},
@@ -172,39 +153,37 @@ std::string to_json(const PingTask& task, const PingResult& result) {
                {"mode", mode_name(status.mode)},
                {"instances", result.service.instance_ids.size()}};
   }
-  ordered_json failures = ordered_json::array();
+  Json failures = Json::array();
   for (const RunFailure& failure : result.failures) {
     failures.push_back({{"check", failure.check}, {"message", failure.message}});
   }
   const RoundTrips times = summarize_round_trips(result.round_trips);
-  const ordered_json json{{"agrees", result.agrees()},
-                          {"scene", task.scene.name()},
-                          {"url", result.url},
-                          {"states_channel", task.link.states_channel},
-                          {"wrenches_channel", task.link.wrenches_channel},
-                          {"seed", task.seed},
-                          {"requests", result.requests},
-                          {"replies", result.checks.replies()},
-                          {"identical", result.checks.identical()},
-                          {"unanswered", result.unanswered},
-                          {"retries", result.retries},
-                          {"undecodable", result.link.undecodable.count},
-                          {"duplicates", result.link.duplicates},
-                          {"conflicting", result.link.conflicting},
-                          {"seconds", result.seconds},
-                          {"round_trip",
-                           {{"min", times.min},
-                            {"median", times.median},
-                            {"p90", times.p90},
-                            {"p99", times.p99},
-                            {"max", times.max}}},
-                          {"stopped_by", result.stopped_by},
-                          {"service", service},
-                          {"failures", failures},
-                          {"likely_causes", result.likely_causes},
-                          {"bodies", bodies}};
-  // Names of scenes and bodies need not be UTF-8.
-  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_lines(Json{{"agrees", result.agrees()},
+                         {"scene", task.scene.name()},
+                         {"url", result.url},
+                         {"states_channel", task.link.states_channel},
+                         {"wrenches_channel", task.link.wrenches_channel},
+                         {"seed", task.seed},
+                         {"requests", result.requests},
+                         {"replies", result.checks.replies()},
+                         {"identical", result.checks.identical()},
+                         {"unanswered", result.unanswered},
+                         {"retries", result.retries},
+                         {"undecodable", result.link.undecodable.count},
+                         {"duplicates", result.link.duplicates},
+                         {"conflicting", result.link.conflicting},
+                         {"seconds", result.seconds},
+                         {"round_trip",
+                          {{"min", times.min},
+                           {"median", times.median},
+                           {"p90", times.p90},
+                           {"p99", times.p99},
+                           {"max", times.max}}},
+                         {"stopped_by", result.stopped_by},
+                         {"service", service},
+                         {"failures", failures},
+                         {"likely_causes", result.likely_causes},
+                         {"bodies", bodies}});
 }
 
 }  // namespace buoyancy::ping

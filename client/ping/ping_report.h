@@ -13,6 +13,9 @@ namespace buoyancy::ping {
 // One line per failure and per likely cause, for standard error; none if the service agrees.
 std::vector<std::string> failure_lines(const PingResult& result);
 
+// "2 of 5 replies differ; " and how.
+std::string describe_check(const CheckResult& check);
+
 std::string to_text(const PingTask& task, const PingResult& result);
 std::string to_json(const PingTask& task, const PingResult& result);  // one object
 

@@ -11,33 +11,17 @@
 namespace buoyancy::ping {
 namespace {
 
-std::string format_array(const std::array<double, 3>& values) {
-  std::string text = "(";
-  text += format_vector(to_vec3(values));
-  text += ')';
-  return text;
-}
-std::string format_array(double value) {
-  return format_number(value);
-}
-
 // "request 17: off by 245 N, limit 1.1e-09 N: expected (0, 0, 10051), received (0, 0, 9806)".
-template <typename Value>
-std::string difference_text(std::int64_t seq, double difference, double limit, const char* unit,
-                            const Value& expected, const Value& received) {
-  std::string text = "request ";
-  text += std::to_string(seq);
-  text += ": off by ";
-  text += format_number(difference, 6);
-  text += unit;
-  text += ", limit ";
-  text += format_number(limit, 3);
-  text += unit;
-  text += ": expected ";
-  text += format_array(expected);
-  text += ", received ";
-  text += format_array(received);
-  return text;
+// expected, received: formatted.
+std::string difference_text(std::int64_t seq, double difference, double limit, std::string_view unit,
+                            std::string_view expected, std::string_view received) {
+  return format_text("request {}: off by {:6}{}, limit {:3}{}: expected {}, received {}", seq, difference,
+                     unit, limit, unit, expected, received);
+}
+std::string difference_text(std::int64_t seq, double difference, double limit, std::string_view unit,
+                            const std::array<double, 3>& expected, const std::array<double, 3>& received) {
+  return difference_text(seq, difference, limit, unit, format_text("({})", to_vec3(expected)),
+                         format_text("({})", to_vec3(received)));
 }
 
 // in_bounds: the difference over its limit. make_failure is called if it is the worst so far.
@@ -59,25 +43,15 @@ void record_status(CheckResult& result, std::int64_t seq, BodyStatus expected, B
   ++result.failed;
   result.worst = std::numeric_limits<double>::infinity();
   if (!result.failure.empty()) return;
-  result.failure = "request ";
-  result.failure += std::to_string(seq);
-  result.failure += ": expected ";
-  result.failure += to_string(expected);
-  result.failure += ", received ";
-  result.failure += to_string(received);
+  result.failure =
+      format_text("request {}: expected {}, received {}", seq, to_string(expected), to_string(received));
 }
 
 // Records the fields of a message that have tolerances of their own.
 void record_fields(CheckResult& result, std::int64_t seq, const MessageDifferences& differences) {
   record(result, differences.in_bounds, [&] {
-    std::string text = "request ";
-    text += std::to_string(seq);
-    text += ": ";
-    text += differences.worst_field;
-    text += " is off by ";
-    text += format_number(differences.in_bounds, 3);
-    text += " times its tolerance";
-    return text;
+    return format_text("request {}: {} is off by {:3} times its tolerance", seq, differences.worst_field,
+                       differences.in_bounds);
   });
 }
 
@@ -88,12 +62,9 @@ bool same_id(const RequestId& a, const RequestId& b) {
 template <typename Message>
 std::string describe_ids(const Message& message) {
   constexpr std::size_t kMaxShown = 8;
-  std::string text = "utime ";
-  text += std::to_string(message.id.utime);
-  text += " and bodies";
+  std::string text = format_text("utime {} and bodies", message.id.utime);
   for (std::size_t i = 0; i < std::min(kMaxShown, message.bodies.size()); ++i) {
-    text += ' ';
-    text += std::to_string(message.bodies[i].body_id);
+    text += format_text(" {}", message.bodies[i].body_id);
   }
   if (message.bodies.size() > kMaxShown) text += " ...";
   if (message.bodies.empty()) text += " none";
@@ -150,13 +121,8 @@ bool ResponseChecks::has_same_ids(const RequestId& id, const Message& expected, 
       expected.bodies, received.bodies, [](const auto& a, const auto& b) { return a.body_id == b.body_id; });
   if (same_bodies && same_id(expected.id, received.id)) return true;
   if (wrong_ids_++ == 0) {
-    first_wrong_ids_ = "request " + std::to_string(id.seq);
-    first_wrong_ids_ += ": ";
-    first_wrong_ids_ += what;
-    first_wrong_ids_ += " with ";
-    first_wrong_ids_ += describe_ids(received);
-    first_wrong_ids_ += "; expected ";
-    first_wrong_ids_ += describe_ids(expected);
+    first_wrong_ids_ = format_text("request {}: {} with {}; expected {}", id.seq, what,
+                                   describe_ids(received), describe_ids(expected));
   }
   return false;
 }
@@ -237,8 +203,9 @@ void ResponseChecks::compare_wrench(const RequestId& id, const BodyState& state,
     volume_ratio = in_bounds(differences.volume, allowed);
   }
   differing.volume_differs = !record(checks.at(Check::kVolume), volume_ratio, [&] {
-    return difference_text(id.seq, differences.volume, allowed, " m^3", expected.submerged_volume,
-                           received.submerged_volume);
+    return difference_text(id.seq, differences.volume, allowed, " m^3",
+                           format_number(expected.submerged_volume),
+                           format_number(received.submerged_volume));
   });
   differing.center_differs = !record(checks.at(Check::kCenter), differences.center_in_bounds, [&] {
     return difference_text(id.seq, differences.center,

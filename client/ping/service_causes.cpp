@@ -17,8 +17,8 @@ void add_if_other(const char* name, double expected, double received, const char
                   std::vector<std::string>& causes) {
   const double size = std::max(std::abs(expected), std::abs(received));  // infinite: of a depth
   if (expected == received || (std::isfinite(size) && std::abs(expected - received) <= 1e-12 * size)) return;
-  causes.push_back(std::string("the service's sea has another ") + name + ": " + format_number(received, 6) +
-                   " instead of " + format_number(expected, 6) + unit);
+  causes.push_back(format_text("the service's sea has another {}: {:6} instead of {:6}{}", name, received,
+                               expected, unit));
 }
 
 void add_sea_causes(const SeaState& expected, const SeaState& received, std::vector<std::string>& causes) {

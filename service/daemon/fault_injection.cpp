@@ -170,11 +170,7 @@ std::string to_string(const FaultOptions& options) {
   std::string text;
   const auto add = [&text](std::string_view key, double value, double unit, std::string_view unit_name) {
     if (value == 0.0) return;
-    text += key;
-    text += '=';
-    text += format_number(value / unit);
-    text += unit_name;
-    text += ',';
+    text += format_text("{}={}{},", key, value / unit, unit_name);
   };
   add("drop", options.drop, 1.0, "");
   add("duplicate", options.duplicate, 1.0, "");
@@ -183,15 +179,9 @@ std::string to_string(const FaultOptions& options) {
   add("delay", options.delay, 1e-3, "ms");
   add("jitter", options.jitter, 1e-3, "ms");
   if (options.stall > 0.0) {
-    text += "stall=";
-    text += format_number(options.stall);
-    text += "s/";
-    text += format_number(options.stall_period);
-    text += "s,";
+    text += format_text("stall={}s/{}s,", options.stall, options.stall_period);
   }
-  text += "seed=";
-  text += std::to_string(options.seed);
-  return text;
+  return text + format_text("seed={}", options.seed);
 }
 
 Fate draw_fate(const FaultOptions& options, std::uint64_t ordinal) {

@@ -4,9 +4,8 @@
 #include <iterator>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "base/format.h"
+#include "base/json.h"
 #include "messages/wire.h"
 #include "scene/scene_report.h"
 #include "service/daemon/daemon.h"
@@ -15,8 +14,6 @@
 
 namespace buoyancy::service {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 LargestMessage make_message(const std::string& name, std::size_t bodies, std::size_t bytes,
                             const std::string& channel) {
@@ -27,16 +24,13 @@ LargestMessage make_message(const std::string& name, std::size_t bodies, std::si
 }
 
 std::string to_text(const LargestMessage& message) {
-  return "  " + message.subject + ": " + std::to_string(message.bytes) + " bytes in " +
-         pluralize(static_cast<std::int64_t>(message.packets), "packet", "packets") + "\n";
-}
-
-Json to_json(const LargestMessage& message) {
-  return {{"bytes", message.bytes}, {"packets", message.packets}};
+  return format_text("  {}: {} bytes in {}\n", message.subject, message.bytes,
+                     pluralize(static_cast<std::int64_t>(message.packets), "packet", "packets"));
 }
 
 Json to_json(const std::optional<LargestMessage>& message) {
-  return message ? to_json(*message) : Json(nullptr);
+  if (!message) return nullptr;
+  return {{"bytes", message->bytes}, {"packets", message->packets}};
 }
 
 std::vector<Warning> warnings_of(const Scene& scene, const std::vector<FlotationOfBody>& flotation,
@@ -106,8 +100,8 @@ std::string check_report_text(const Scene& scene, const LargestMessages& message
   if (messages.hydrostatics) text += to_text(*messages.hydrostatics);
   if (messages.loads) text += to_text(*messages.loads);
   if (buffer) {
-    text += "  receive buffer that this machine grants this user: " + std::to_string(buffer->max_message) +
-            " bytes\n";
+    text +=
+        format_text("  receive buffer that this machine grants this user: {} bytes\n", buffer->max_message);
   }
   for (const Warning& warning : warnings_of(scene, flotation, messages, buffer)) {
     text += "warning: " + warning.message() + "\n";
@@ -123,12 +117,12 @@ std::string check_report_json(const Scene& scene, const LargestMessages& message
                         {"response", to_json(messages.response)},
                         {"hydrostatics", to_json(messages.hydrostatics)},
                         {"loads", to_json(messages.loads)}};
-  report["receive_buffer"] = buffer ? Json(buffer->max_message) : Json(nullptr);
+  report["receive_buffer"] = buffer ? std::optional(buffer->max_message) : std::nullopt;
   report["warnings"] = Json::array();
   for (const Warning& warning : warnings_of(scene, flotation, messages, buffer)) {
     report["warnings"].push_back(warning.message());
   }
-  return report.dump(2) + "\n";
+  return json_lines(report);
 }
 
 }  // namespace buoyancy::service

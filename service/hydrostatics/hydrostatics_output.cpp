@@ -8,15 +8,12 @@
 #include <span>
 #include <utility>
 
-#include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
 #include "service/hydrostatics/table_columns.h"
 
 namespace buoyancy::service {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
@@ -59,14 +56,6 @@ std::string reason(const Equilibrium& at) {
   return text;
 }
 
-std::array<double, 3> array_of(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-std::array<double, 4> wxyz(const Eigen::Quaterniond& q) {
-  return {q.w(), q.x(), q.y(), q.z()};
-}
-
 std::string csv_row(const std::vector<double>& values) {
   std::string row;
   for (const double value : values) row += fmt::format("{}{:.17g}", row.empty() ? "" : ",", value);
@@ -80,11 +69,6 @@ Json arm_json(const RightingArm& arm) {
           {"draft", arm.draft},
           {"gz", arm.gz},
           {"kn", arm.kn}};
-}
-
-template <typename Value>
-Json json_or_null(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
 }
 
 Json immersion_json(const std::optional<PointImmersion>& immersion) {
@@ -143,8 +127,8 @@ Json equilibria_json(const Equilibria& equilibria) {
   Json attitudes = Json::array();
   for (const Equilibrium& at : equilibria.attitudes) {
     Json entry{{"stable", at.is_stable()},
-               {"position", array_of(at.pose.p_WB)},
-               {"quaternion_wxyz", wxyz(at.pose.q_WB)},
+               {"position", at.pose.p_WB},
+               {"quaternion_wxyz", at.pose.q_WB},
                {"draft", at.draft},
                {"heel", degrees(at.angles.heel)},
                {"trim", degrees(at.angles.trim)},
@@ -170,12 +154,12 @@ std::string equilibria_csv(const Equilibria& equilibria) {
       "stable,heel,trim,draft,px,py,pz,qw,qx,qy,qz,gm_min,gm_max,energy,residual_force,residual_torque,"
       "force_bound,torque_bound\n";
   for (const Equilibrium& at : equilibria.attitudes) {
-    const std::array<double, 4> q = wxyz(at.pose.q_WB);
+    const Eigen::Quaterniond& q = at.pose.q_WB;
     const std::array<double, 2>& heights = at.state.hydrostatics.metacentric_heights;
     text += csv_row({at.is_stable() ? 1.0 : 0.0, degrees(at.angles.heel), degrees(at.angles.trim), at.draft,
-                     at.pose.p_WB.x(), at.pose.p_WB.y(), at.pose.p_WB.z(), q[0], q[1], q[2], q[3], heights[0],
-                     heights[1], at.state.energy, at.residual_force, at.residual_torque, at.force_bound,
-                     at.torque_bound});
+                     at.pose.p_WB.x(), at.pose.p_WB.y(), at.pose.p_WB.z(), q.w(), q.x(), q.y(), q.z(),
+                     heights[0], heights[1], at.state.energy, at.residual_force, at.residual_torque,
+                     at.force_bound, at.torque_bound});
   }
   return text;
 }
@@ -282,10 +266,10 @@ Json righting_json(const RightingResults& results) {
   };
   return {{"points", std::move(points)},
           {"crossings", std::move(crossings)},
-          {"vanishing_starboard", json_or_null(in_degrees(results.curve.vanishing_starboard()))},
-          {"vanishing_port", json_or_null(in_degrees(results.curve.vanishing_port()))},
-          {"unbalanced_starboard", json_or_null(in_degrees(results.curve.unbalanced_starboard))},
-          {"unbalanced_port", json_or_null(in_degrees(results.curve.unbalanced_port))},
+          {"vanishing_starboard", in_degrees(results.curve.vanishing_starboard())},
+          {"vanishing_port", in_degrees(results.curve.vanishing_port())},
+          {"unbalanced_starboard", in_degrees(results.curve.unbalanced_starboard)},
+          {"unbalanced_port", in_degrees(results.curve.unbalanced_port)},
           {"max_starboard", maximum(results.curve.max_starboard)},
           {"max_port", maximum(results.curve.max_port)},
           {"deck_edge", immersions_json(results.deck_edge)},

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "base/json.h"
 #include "flotation/equilibrium.h"
 #include "flotation/hydrostatic_table.h"
 #include "service/hydrostatics/righting_results.h"
@@ -16,17 +15,17 @@ namespace buoyancy::service {
 std::string outcome_sentence(FlotationOutcome outcome);
 
 std::string equilibria_text(const Equilibria& equilibria);
-nlohmann::ordered_json equilibria_json(const Equilibria& equilibria);
+Json equilibria_json(const Equilibria& equilibria);
 std::string equilibria_csv(const Equilibria& equilibria);
 
 using TableRows = std::vector<HydrostaticRow>;
 
 std::string table_text(const HydrostaticTable& table, const TableRows& rows);
-nlohmann::ordered_json table_json(const HydrostaticTable& table, const TableRows& rows);
+Json table_json(const HydrostaticTable& table, const TableRows& rows);
 std::string table_csv(const TableRows& rows);
 
 std::string righting_text(const RightingResults& results);
-nlohmann::ordered_json righting_json(const RightingResults& results);
+Json righting_json(const RightingResults& results);
 std::string righting_csv(const RightingResults& results);
 
 }  // namespace buoyancy::service

@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.h"
 #include "service/hydrostatics/table_columns.h"
 #include "view/page/base64.h"
 #include "view/page/mesh_drawing.h"
@@ -18,18 +17,12 @@
 namespace buoyancy::service {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 constexpr std::size_t kStateNumbers = 19;
 
 constexpr TableColumn kHeel{"heel", "Heel", "°"};
 constexpr TableColumn kTrim{"trim", "Trim", "°"};
 constexpr TableColumn kDraft{"draft", "Draft of the lowest point", "m"};
-
-Json json_array(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
 
 // At most `max` of the numbers below count, ascending and evenly spaced, with the first and the last.
 std::vector<std::size_t> evenly_chosen(std::size_t count, std::size_t max) {
@@ -115,7 +108,7 @@ Json mesh_json(const FloatingBody& body) {
   }
   const std::size_t triangles = drawing.triangle_count();
   view::reduce(drawing, view::kMaxDrawnTriangles);
-  return {{"center", json_array(body.center_B())},
+  return {{"center", body.center_B()},
           {"diagonal", (high - low).norm()},
           {"volume", body.volume()},
           {"triangles", triangles},
@@ -129,15 +122,12 @@ Json model_json(const PageSubject& subject, bool with_mass) {
   const FloatingBody& body = *subject.body;
   return {
       {"water",
-       {{"up", json_array(water.up_W)},
-        {"level", water.level},
-        {"density", water.density},
-        {"gravity", water.gravity}}},
-      {"bodies",
-       Json::array({{{"id", 1},
-                     {"mesh", 0},
-                     {"mass", with_mass ? Json(body.total_mass()) : Json(nullptr)},
-                     {"center_of_mass", with_mass ? json_array(body.center_of_mass_B()) : Json(nullptr)}}})},
+       {{"up", water.up_W}, {"level", water.level}, {"density", water.density}, {"gravity", water.gravity}}},
+      {"bodies", Json::array({{{"id", 1},
+                               {"mesh", 0},
+                               {"mass", with_mass ? std::optional(body.total_mass()) : std::nullopt},
+                               {"center_of_mass",
+                                with_mass ? std::optional(body.center_of_mass_B()) : std::nullopt}}})},
       {"meshes", Json::array({mesh_json(body)})}};
 }
 
@@ -152,7 +142,7 @@ Json page_data(const PageSubject& subject, const char* command, const PageRows& 
           {"command", command},
           {"mass", subject.body->mass()},
           {"total_mass", subject.body->total_mass()},
-          {"center_of_mass", json_array(subject.body->center_of_mass_B())},
+          {"center_of_mass", subject.body->center_of_mass_B()},
           {"model", model_json(subject, with_mass)},
           {"columns", std::move(columns)},
           {"values", encoded_values(rows)},
@@ -167,7 +157,7 @@ Json page_data(const PageSubject& subject, const char* command, const PageRows& 
 
 std::string page_of(const Json& data, std::string_view three) {
   std::string page = view::self_contained_page("hydrostatics.html", three);
-  view::insert_data(page, data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  view::insert_data(page, json_line(data));
   return page;
 }
 

@@ -4,36 +4,30 @@
 #include <cmath>
 #include <utility>
 
-#include "base/format.h"
+#include "base/facts.h"
 #include "geometry/mass_properties.h"
 #include "geometry/mesh_import.h"
+#include "geometry/mesh_report_facts.h"
 #include "geometry/surface_distance.h"
 #include "geometry/volume_difference.h"
 #include "geometry/welding.h"
 #include "hydrostatics/load_difference.h"
-#include "scene/mesh_report_json.h"
 #include "service/mesh/mesh_wrap.h"
 
 namespace buoyancy::service {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-std::string text_of(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
 Json json_of(const CheckedMesh& mesh) {
-  Json json = mesh.report ? mesh_report_json(*mesh.report) : Json{{"name", mesh.name}};
+  Json json = mesh.report ? mesh_report_facts(*mesh.report).json() : Json{{"name", mesh.name}};
   json["usable"] = mesh.mesh.has_value();
-  json["error"] = mesh.error ? Json(mesh.error->message()) : Json(nullptr);
+  json["error"] = mesh.error ? std::optional(mesh.error->message()) : std::nullopt;
   return json;
 }
 
 std::string line_of(const CheckedMesh& mesh) {
   std::string line = mesh.name;
   if (!mesh.mesh) return line + ": not usable: " + (mesh.error ? mesh.error->message() : "");
-  line += ": usable, " + format_number(mesh.report->volume, 6) + " m^3";
+  line += format_text(": usable, {:6} m^3", mesh.report->volume);
   const RepairReport& repair = mesh.report->repair;
   if (!repair.steps.empty()) {
     line += "; repaired: ";
@@ -81,46 +75,38 @@ struct Difference {
   LoadDifference loads;
 };
 
-Json json_of(const ComparedMesh& mesh) {
-  const auto vector = [](const Vec3& v) { return Json{v.x(), v.y(), v.z()}; };
+Facts facts_of(const ComparedMesh& mesh) {
   const Mat3& inertia = mesh.properties.inertia_B;
-  return {{"name", mesh.name},
-          {"triangles", mesh.mesh.mesh.triangles.size()},
-          {"volume", mesh.properties.volume},
-          {"centroid", vector(mesh.properties.centroid_B)},
-          {"inertia", {vector(inertia.row(0)), vector(inertia.row(1)), vector(inertia.row(2))}}};
+  Facts facts;
+  facts.heading("{}", mesh.name).add("name", mesh.name);
+  facts.add("triangles", mesh.mesh.mesh.triangles.size());
+  facts.line("volume").add("volume", mesh.properties.volume, "{} m^3");
+  facts.line("centroid").add("centroid", mesh.properties.centroid_B, "{} m");
+  facts.line("inertia").say("Ixx, Iyy, Izz {:6}; Ixy, Ixz, Iyz {:6} m^5, about the centroid, of density 1",
+                            Vec3(inertia.diagonal()), Vec3(inertia(0, 1), inertia(0, 2), inertia(1, 2)));
+  facts.add("inertia", Json{Vec3(inertia.row(0)), Vec3(inertia.row(1)), Vec3(inertia.row(2))});
+  return facts;
 }
 
-std::string line_of(const ComparedMesh& mesh) {
-  const Mat3& inertia = mesh.properties.inertia_B;
-  return mesh.name + "\n  volume        " + format_number(mesh.properties.volume) + " m^3\n  centroid      " +
-         format_vector(mesh.properties.centroid_B) + " m\n  inertia       Ixx, Iyy, Izz " +
-         format_vector(inertia.diagonal(), 6) + "; Ixy, Ixz, Iyz " +
-         format_vector({inertia(0, 1), inertia(0, 2), inertia(1, 2)}, 6) +
-         " m^5, about the centroid, of density 1\n";
-}
-
-std::string text_of(const ComparedMesh& a, const ComparedMesh& b, const Difference& difference,
-                    const MeshOptions& options) {
-  const double weight = options.density * options.gravity;
-  std::string text = line_of(a) + line_of(b) + "difference\n";
-  const auto line = [&text](const std::string& label, const std::string& value) {
-    text += "  " + label + std::string(label.size() < 14 ? 14 - label.size() : 1, ' ') + value + "\n";
-  };
+Facts facts_of(const ComparedMesh& a, const ComparedMesh& b, const Difference& difference,
+               const MeshOptions& options) {
   const double change = b.properties.volume - a.properties.volume;
-  line("volume",
-       format_number(change, 6) + " m^3, " + format_number(100.0 * change / a.properties.volume, 4) + " %");
-  line("centroid", format_vector(b.properties.centroid_B - a.properties.centroid_B, 6) + " m");
-  line("between", format_number(difference.volume.value, 6) + " m^3 in one of them alone, +- " +
-                      format_number(difference.volume.error, 3) + " m^3");
-  line("distance", format_number(difference.from_a, 6) + " m from the first to the second, " +
-                       format_number(difference.from_b, 6) + " m back");
-  line("force", "up to " + format_number(difference.loads.force, 6) + " N over " +
-                    std::to_string(options.poses) + " poses; never more than " +
-                    format_number(weight * (difference.volume.value + difference.volume.error), 6) +
-                    " N in water at rest");
-  line("torque", "up to " + format_number(difference.loads.torque, 6) + " N m about the origin");
-  return text;
+  const double force_bound =
+      options.density * options.gravity * (difference.volume.value + difference.volume.error);
+  Facts facts;
+  facts.include("a", facts_of(a)).include("b", facts_of(b)).heading("difference");
+  facts.line("volume").say("{:6} m^3", change).say("{:4} %", 100.0 * change / a.properties.volume);
+  facts.line("centroid").say("{:6} m", Vec3(b.properties.centroid_B - a.properties.centroid_B));
+  facts.line("between").add("volume_between", difference.volume.value, "{:6} m^3 in one of them alone");
+  facts.add("volume_between_error", difference.volume.error, "+- {:3} m^3");
+  facts.line("distance").add("distance_from_a", difference.from_a, "{:6} m from the first to the second");
+  facts.add("distance_from_b", difference.from_b, "{:6} m back");
+  facts.add("density", options.density).add("gravity", options.gravity).add("poses", options.poses);
+  facts.line("force").add("force_difference", difference.loads.force, "up to {:6} N");
+  facts.say(" over {} poses; never more than {:6} N in water at rest", options.poses, force_bound);
+  facts.line("torque").add("torque_difference", difference.loads.torque, "up to {:6} N m about the origin");
+  facts.add("force_bound", force_bound);
+  return facts;
 }
 
 }  // namespace
@@ -180,7 +166,7 @@ std::string report_text(const std::vector<CheckedMesh>& meshes) {
 std::string report_json(const std::vector<CheckedMesh>& meshes) {
   Json list = Json::array();
   for (const CheckedMesh& mesh : meshes) list.push_back(json_of(mesh));
-  return text_of({{"meshes", std::move(list)}, {"usable", count_usable(meshes)}});
+  return json_lines({{"meshes", std::move(list)}, {"usable", count_usable(meshes)}});
 }
 
 Expected<CheckedMesh> as_written(CheckedMesh mesh, const std::string& output) {
@@ -209,9 +195,9 @@ Expected<CheckedMesh> as_written(CheckedMesh mesh, const std::string& output) {
 std::string repair_text(const CheckedMesh& repaired, const std::string& output) {
   std::string text = to_text(*repaired.report) + "\n";
   if (repaired.wrap) {
-    text += "  wrap          gaps up to " + format_number(repaired.wrap->gap, 6) + " m; up to " +
-            format_number(repaired.wrap->from_mesh, 4) + " m from the mesh to the wrap, " +
-            format_number(repaired.wrap->from_wrap, 4) + " m back\n";
+    text += format_text(
+        "  wrap          gaps up to {:6} m; up to {:4} m from the mesh to the wrap, {:4} m back\n",
+        repaired.wrap->gap, repaired.wrap->from_mesh, repaired.wrap->from_wrap);
   }
   return text + "written to " + output + ": " +
          pluralize(repaired.report->triangles, "triangle", "triangles") + "\n";
@@ -226,7 +212,7 @@ std::string repair_json(const CheckedMesh& repaired, const std::string& output) 
                     {"distance_from_mesh", repaired.wrap->from_mesh},
                     {"distance_from_wrap", repaired.wrap->from_wrap}};
   }
-  return text_of(json);
+  return json_lines(json);
 }
 
 Expected<std::string> compare_meshes(const MeshPlan& plan, const MeshOptions& options) {
@@ -241,20 +227,8 @@ Expected<std::string> compare_meshes(const MeshPlan& plan, const MeshOptions& op
   difference.loads = largest_load_difference(make_hydrostatic_mesh(a->mesh, WithTree::kYes),
                                              make_hydrostatic_mesh(b->mesh, WithTree::kYes), options.density,
                                              options.gravity, options.poses);
-  if (!options.json) return text_of(*a, *b, difference, options);
-  const double weight = options.density * options.gravity;
-  return text_of({{"a", json_of(*a)},
-                  {"b", json_of(*b)},
-                  {"volume_between", difference.volume.value},
-                  {"volume_between_error", difference.volume.error},
-                  {"distance_from_a", difference.from_a},
-                  {"distance_from_b", difference.from_b},
-                  {"density", options.density},
-                  {"gravity", options.gravity},
-                  {"poses", options.poses},
-                  {"force_difference", difference.loads.force},
-                  {"torque_difference", difference.loads.torque},
-                  {"force_bound", weight * (difference.volume.value + difference.volume.error)}});
+  Facts facts = facts_of(*a, *b, difference, options);
+  return options.json ? json_lines(facts.json()) : facts.text() + "\n";
 }
 
 }  // namespace buoyancy::service

@@ -34,7 +34,7 @@ Expected<CheckedMesh> wrapped(const CheckedMesh& mesh, const MeshPlan& plan, dou
 
 // One mesh: its report; several: a line for each, and a summary.
 std::string report_text(const std::vector<CheckedMesh>& meshes);
-// {"meshes": [...], "usable": N}; a mesh has the fields of mesh_report_json(), "usable", and "error", a text
+// {"meshes": [...], "usable": N}; a mesh has the fields of mesh_report_facts(), "usable", and "error", a text
 // or null.
 std::string report_json(const std::vector<CheckedMesh>& meshes);
 

@@ -7,8 +7,7 @@
 #include <span>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.h"
 #include "geometry/mesh_import.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/welding.h"
@@ -18,8 +17,6 @@
 
 namespace buoyancy::service {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // A face by the places of its corners, whatever its winding.
 using Place = std::array<double, 3>;
@@ -96,11 +93,10 @@ Expected<std::string> mesh_page(const MeshPlan& plan, const CheckedMesh& repaire
     data["before"] = mesh_json(before, nullptr);
     data["after"] = nullptr;
   }
-  const Vec3 center = box.center();
-  data["centre"] = {center.x(), center.y(), center.z()};
+  data["centre"] = Vec3(box.center());
   data["size"] = box.diagonal();
   std::string page = view::self_contained_page("mesh.html", "");
-  view::insert_data(page, data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  view::insert_data(page, json_line(data));
   return page;
 }
 

@@ -7,9 +7,8 @@
 #include <stdexcept>
 #include <system_error>
 
-#include <nlohmann/json.hpp>
-
 #include "base/format.h"
+#include "base/json.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "recording/record_writer.h"
 #include "recording/staged_file.h"
@@ -20,8 +19,6 @@
 
 namespace buoyancy::service {
 namespace {
-
-using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "buoyancy-replay part, version 1";
 
@@ -62,10 +59,10 @@ tl::unexpected<Error> no_manifest(const std::filesystem::path& path, const std::
                      "Run the part again with this version"});
 }
 
-ordered_json to_json(const PartManifest& manifest) {
-  ordered_json facts = ordered_json::object();
+Json to_json(const PartManifest& manifest) {
+  Json facts = Json::object();
   for (const auto& [name, value] : manifest.facts) facts[name] = value;
-  ordered_json numbered = ordered_json::object();
+  Json numbered = Json::object();
   for (const auto& [session, count] : manifest.numbered_requests) numbered[std::to_string(session)] = count;
   return {{"format", kFormat},
           {"part", manifest.part.number},
@@ -84,18 +81,18 @@ ordered_json to_json(const PartManifest& manifest) {
 }
 
 // Throws a std::exception, such as nlohmann::json::exception, if this is no manifest.
-PartManifest from_json(const ordered_json& json) {
+PartManifest from_json(const Json& json) {
   PartManifest manifest;
   json.at("part").get_to(manifest.part.number);
   json.at("parts").get_to(manifest.part.count);
   for (const auto& [name, value] : json.at("facts").items()) {
     manifest.facts.emplace_back(name, value.get<std::string>());
   }
-  const ordered_json& input = json.at("input");
+  const Json& input = json.at("input");
   input.at("begin").get_to(manifest.input_begin);
   input.at("end").get_to(manifest.input_end);
   input.at("hash").get_to(manifest.input_hash);
-  const ordered_json& output = json.at("output");
+  const Json& output = json.at("output");
   output.at("bytes").get_to(manifest.output_bytes);
   output.at("hash").get_to(manifest.output_hash);
   output.at("events").get_to(manifest.output_events);
@@ -155,8 +152,7 @@ void remove_manifest(const std::filesystem::path& part) {
 
 Expected<void> write_manifest(const std::filesystem::path& part, const PartManifest& manifest) {
   // Names of channels and files need not be UTF-8.
-  const std::string text =
-      to_json(manifest).dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  const std::string text = json_lines(to_json(manifest));
   Expected<StagedFile> staged = StagedFile::create(manifest_path(part));
   if (!staged) return tl::unexpected(staged.error());
   Expected<RecordWriter> file = RecordWriter::create(*staged);
@@ -173,7 +169,7 @@ Expected<PartManifest> read_manifest(const std::filesystem::path& part) {
   if (!file) return no_manifest(path, "is missing or not readable");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   try {
-    const ordered_json json = ordered_json::parse(text);
+    const Json json = Json::parse(text);
     if (json.at("format") != kFormat) return no_manifest(path, "has another format");
     return from_json(json);
   } catch (const std::exception& error) {

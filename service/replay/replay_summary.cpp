@@ -1,6 +1,5 @@
 #include "service/replay/replay_summary.h"
 
-#include <nlohmann/json.hpp>
 #include <spdlog/fmt/fmt.h>
 
 namespace buoyancy::service {
@@ -74,8 +73,8 @@ std::string comparison_text(const ReplayComparison& comparison) {
   return text;
 }
 
-nlohmann::ordered_json comparison_json(const ReplayComparison& comparison) {
-  nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
+Json comparison_json(const ReplayComparison& comparison) {
+  Json bodies = Json::array();
   for (const auto& [id, body] : comparison.bodies()) {
     bodies.push_back({{"body_id", id},
                       {"responses", body.responses},
@@ -142,29 +141,29 @@ std::string summary_text(const ReplaySummary& summary, const ReplayComparison* c
   return text;
 }
 
-nlohmann::ordered_json summary_to_json(const ReplaySummary& summary) {
-  nlohmann::ordered_json json{{"complete", summary.complete()}, {"stopped_by", summary.stopped_by}};
+Json summary_to_json(const ReplaySummary& summary) {
+  Json json{{"complete", summary.complete()}, {"stopped_by", summary.stopped_by}};
   visit_members(summary, [&json](const std::string& pointer, const auto& member) {
-    json[nlohmann::ordered_json::json_pointer(pointer)] = member;
+    json[Json::json_pointer(pointer)] = member;
   });
   json["requests_per_second"] = per_second(summary.counters.requests, summary.seconds);
   return json;
 }
 
-ReplaySummary summary_from_json(const nlohmann::ordered_json& json) {
+ReplaySummary summary_from_json(const Json& json) {
   ReplaySummary summary;
   visit_members(summary, [&json](const std::string& pointer, auto& member) {
-    json.at(nlohmann::ordered_json::json_pointer(pointer)).get_to(member);
+    json.at(Json::json_pointer(pointer)).get_to(member);
   });
   return summary;
 }
 
 std::string summary_json(const ReplaySummary& summary, const ReplayComparison* comparison) {
-  nlohmann::ordered_json json = summary_to_json(summary);
+  Json json = summary_to_json(summary);
   if (summary.requests && summary.requests->missing() > 0)
     json["requests_not_recorded"] = summary.requests->missing();
   if (comparison != nullptr) json["compared"] = comparison_json(*comparison);
-  return json.dump(2) + "\n";
+  return json_lines(json);
 }
 
 }  // namespace buoyancy::service

@@ -3,8 +3,7 @@
 
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "base/json.h"
 #include "service/replay/replay.h"
 #include "service/replay/replay_comparison.h"
 
@@ -17,7 +16,7 @@ std::string summary_json(const ReplaySummary& summary, const ReplayComparison* c
 
 // The same object without the comparison, and back. Reading it throws nlohmann::json::exception if a field is
 // missing or of another type; stopped_by is not read.
-nlohmann::ordered_json summary_to_json(const ReplaySummary& summary);
-ReplaySummary summary_from_json(const nlohmann::ordered_json& json);
+Json summary_to_json(const ReplaySummary& summary);
+ReplaySummary summary_from_json(const Json& json);
 
 }  // namespace buoyancy::service

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <string>
+#include <string_view>
+#include <variant>
 
 #include "base/vec3.h"
 
@@ -16,6 +19,16 @@ std::string format_shortest(double value);
 
 // Formats as "0.25, 1, -3".
 std::string format_vector(const Vec3& vector, int digits = 9);
+
+using FormatValue = std::variant<double, std::int64_t, std::uint64_t, std::string_view, Vec3>;
+
+// Returns the pattern with a value in place of each {}: numbers and vectors with at most 9 significant
+// digits, or as many as {:4} says. Without values, the pattern itself, braces included.
+std::string format_values(std::string_view pattern, std::initializer_list<FormatValue> values);
+template <typename... Values>
+std::string format_text(std::string_view pattern, const Values&... values) {
+  return format_values(pattern, {FormatValue(values)...});
+}
 
 // Formats as "1 hole" or "5 holes".
 std::string pluralize(std::int64_t count, const std::string& singular, const std::string& plural);

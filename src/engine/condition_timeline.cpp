@@ -42,8 +42,7 @@ Error unknown_kind(const Body& body, ConditionKind kind) {
 
 Error unknown_index(const Body& body, const ConditionChange& change, std::size_t count) {
   const bool is_tank = change.kind == ConditionKind::kTank;
-  std::string actual = is_tank ? "tank " : "compartment ";
-  actual += std::to_string(change.index);
+  std::string actual = format_text(is_tank ? "tank {}" : "compartment {}", change.index);
   std::string expected =
       is_tank ? "a compartment: the body has no tanks" : "a tank: the body has no compartments";
   if (count > 0) {

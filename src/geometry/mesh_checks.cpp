@@ -19,9 +19,7 @@ std::string number(double value) {
 }
 
 std::string point(const Vec3& point_B) {
-  std::string text = "(";
-  text += format_vector(point_B, kDigits);
-  return text + ")";
+  return format_text("({:6})", point_B);
 }
 
 std::string edges_of_kind(const TriangleMesh& mesh, const std::vector<Edge>& edges, const std::string& kind) {

@@ -3,127 +3,103 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
-#include "base/format.h"
+#include "geometry/mesh_report_facts.h"
 
 namespace buoyancy {
 namespace {
 
 constexpr std::size_t kMaxListed = 8;  // components; holes
 constexpr double kMinOverlap = 1e-6;   // of the volume
-
-// Builds the text "a, b, c", or `otherwise` if the list is empty.
-class Listing {
- public:
-  void add_if(bool applies, const std::string& item) {
-    if (!applies) return;
-    if (!text_.empty()) text_ += ", ";
-    text_ += item;
-  }
-  std::string text(const std::string& otherwise) const { return text_.empty() ? otherwise : text_; }
-
- private:
-  std::string text_;
-};
-
-class AlignedLines {
- public:
-  void add(std::string_view label, const std::string& value) {
-    constexpr std::size_t kLabelWidth = 14;
-    if (!text_.empty()) text_ += '\n';
-    text_ += "  ";
-    text_ += label;
-    text_.append(label.size() < kLabelWidth ? kLabelWidth - label.size() : 1, ' ');
-    text_ += value;
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
 // Files hold single precision: more digits would be noise.
-std::string coordinates(const Vec3& point_B) {
-  return format_vector(point_B, 7);
-}
+constexpr std::string_view kBoxWords = "from {:7} to {:7}";
 
 std::string percent(double share) {
   return format_number(100.0 * share, 3) + " %";
 }
 
-std::string source_text(const MeshSource& source) {
-  Listing listing;
-  listing.add_if(!source.format.empty(), source.format);
-  listing.add_if(!source.up_axis.empty(), "up axis " + source.up_axis);
-  listing.add_if(source.nodes > 1, std::to_string(source.nodes) + " nodes");
-  listing.add_if(source.ignored_primitives > 0,
-                 pluralize(source.ignored_primitives, "point or line left out", "points and lines left out"));
-  listing.add_if(!source.note.empty(), source.note);
-  return listing.text("");
+Facts polygons_facts(const PolygonSplit& split) {
+  const bool some = split.non_planar > 0;
+  Facts facts;
+  facts.line("polygons").add("count", split.polygons, "{} of four or more corners, split into triangles");
+  facts.add("non_planar", split.non_planar, some ? "; {} not planar" : "");
+  facts.add("largest_distance", split.largest_distance, some ? "up to {:4} m from a plane" : "");
+  facts.add("split_volume", split.split_volume, some ? "between whose extreme splits lie {:4} m^3" : "");
+  return facts;
 }
 
-std::string polygons_text(const PolygonSplit& split) {
-  std::string text = std::to_string(split.polygons) + " of four or more corners, split into triangles";
-  if (split.non_planar == 0) return text;
-  return text + "; " + std::to_string(split.non_planar) + " not planar, up to " +
-         format_number(split.largest_distance, 4) + " m from a plane, between whose extreme splits lie " +
-         format_number(split.split_volume, 4) + " m^3";
-}
-
-std::string vertices_text(const MeshReport& report) {
-  std::string text = std::to_string(report.vertices_stored) + " stored, " +
-                     std::to_string(report.vertices_welded) + " after welding";
-  if (report.weld == WeldKind::kTolerance) {
-    text += "; cracks closed by moving vertices up to " + format_number(report.weld_largest_move) + " m";
-  }
-  return text;
+Facts source_facts(const MeshSource& source) {
+  Facts facts;
+  facts.add("format", source.format, source.format.empty() ? "" : "{}");
+  facts.add("up_axis", source.up_axis, source.up_axis.empty() ? "" : "up axis {}");
+  facts.add("note", source.note).add("nodes", source.nodes, source.nodes > 1 ? "{} nodes" : "");
+  facts.add("left_out", source.ignored_primitives);
+  facts.say_if(source.ignored_primitives > 0,
+               pluralize(source.ignored_primitives, "point or line left out", "points and lines left out"));
+  facts.say_if(!source.note.empty(), "{}", source.note);
+  return facts;
 }
 
 std::string edges_text(const MeshReport& report) {
-  Listing listing;
-  listing.add_if(report.boundary_edges > 0, std::to_string(report.boundary_edges) + " boundary");
-  listing.add_if(report.non_manifold_edges > 0, std::to_string(report.non_manifold_edges) + " non-manifold");
-  listing.add_if(report.misoriented_edges > 0, std::to_string(report.misoriented_edges) + " misoriented");
-  listing.add_if(report.balanced_edges > 0, std::to_string(report.balanced_edges) + " balanced");
-  if (!report.closed()) return listing.text("");
-  return listing.text("each used once in each direction") +
-         (report.balanced_edges > 0 ? " (shared by four or more faces)" : "");
+  Facts facts;
+  facts.say_if(report.boundary_edges > 0, "{} boundary", report.boundary_edges);
+  facts.say_if(report.non_manifold_edges > 0, "{} non-manifold", report.non_manifold_edges);
+  facts.say_if(report.misoriented_edges > 0, "{} misoriented", report.misoriented_edges);
+  facts.say_if(report.balanced_edges > 0, "{} balanced", report.balanced_edges);
+  if (report.closed()) {
+    facts.say(report.balanced_edges > 0 ? " (shared by four or more faces)"
+                                        : "each used once in each direction");
+  }
+  return facts.text();
 }
 
-std::string state_text(const MeshReport& report) {
+std::string_view state_text(const MeshReport& report) {
   if (report.triangles == 0) return "none";
   if (report.closed()) return report.balanced_edges == 0 ? "closed" : "balanced";
   return report.non_manifold_edges == 0 && report.misoriented_edges == 0 ? "open" : "open or inconsistent";
 }
 
 std::string faces_text(const MeshReport& report) {
-  Listing listing;
-  listing.add_if(report.dropped_faces > 0,
-                 std::to_string(report.dropped_faces) + " dropped for using a vertex twice");
-  listing.add_if(report.degenerate_faces > 0, std::to_string(report.degenerate_faces) + " of zero area");
-  listing.add_if(report.duplicate_faces > 0,
-                 pluralize(report.duplicate_faces, "duplicate", "duplicates") + " of an earlier face");
-  return listing.text("");
+  Facts facts;
+  facts.say_if(report.dropped_faces > 0, "{} dropped for using a vertex twice", report.dropped_faces);
+  facts.say_if(report.degenerate_faces > 0, "{} of zero area", report.degenerate_faces);
+  facts.say_if(report.duplicate_faces > 0, "{} of an earlier face",
+               pluralize(report.duplicate_faces, "duplicate", "duplicates"));
+  return facts.text();
 }
 
-std::string component_text(const ComponentReport& component) {
-  std::string text = pluralize(component.triangles, "triangle", "triangles") + ", " +
-                     format_number(component.volume) + " m^3";
-  if (!component.closed) text += ", open";
-  if (component.cavity) text += ", a cavity";
-  if (component.nested) text += ", inside another: its volume counts twice";
-  if (component.flipped) text += ", was inside out: its winding was reversed";
-  return text;
+Facts component_facts(const ComponentReport& component) {
+  Facts facts;
+  facts.add("triangles", component.triangles);
+  facts.say(pluralize(component.triangles, "triangle", "triangles"));
+  facts.add("volume", component.volume, "{} m^3");
+  facts.add("closed", component.closed).say_if(!component.closed, "open");
+  facts.add_flag("cavity", component.cavity, "a cavity");
+  facts.add_flag("nested", component.nested, "inside another: its volume counts twice");
+  facts.add_flag("turned", component.flipped, "was inside out: its winding was reversed");
+  return facts;
 }
 
-// closing: that of all holes, if it is known.
-std::string hole_text(const HoleReport& hole, const std::optional<ClosingEstimate>& closing) {
-  return pluralize(hole.edges, "edge", "edges") + ", from " + coordinates(hole.box.min_B) + " to " +
-         coordinates(hole.box.max_B) + "; " + format_number(hole.perimeter, 4) + " m around, " +
-         format_number(hole.area, 4) + " m^2, " + format_number(hole.bulge, 3) +
-         " m^3 in a hemisphere over it" +
-         (closing ? ", " + percent(hole.bulge / closing->volume) + " of the closed volume" : "") +
-         (hole.slit ? "; a slit" : "");
+Json to_json(const std::optional<ClosingEstimate>& closing) {
+  if (!closing) return nullptr;
+  return {{"volume", closing->volume}, {"bulge", closing->bulge}, {"disagreement", closing->disagreement}};
+}
+
+Json to_json(const BoundingBox& box) {
+  return {{"min", box.min_B}, {"max", box.max_B}};
+}
+
+// number: of the hole, from 1. closing: that of all holes, if it is known.
+Facts hole_facts(std::size_t number, const HoleReport& hole, const std::optional<ClosingEstimate>& closing) {
+  Facts facts;
+  facts.add("edges", hole.edges).say("{}: {}", number, pluralize(hole.edges, "edge", "edges"));
+  facts.add("box", to_json(hole.box)).say(kBoxWords, hole.box.min_B, hole.box.max_B);
+  facts.add("perimeter", hole.perimeter, "; {:4} m around").add("area", hole.area, "{:4} m^2");
+  facts.add("bulge", hole.bulge, "{:3} m^3 in a hemisphere over it");
+  if (closing) facts.say("{} of the closed volume", percent(hole.bulge / closing->volume));
+  facts.add_flag("slit", hole.slit, "; a slit");
+  return facts;
 }
 
 std::int64_t count_components(const MeshReport& report, bool ComponentReport::*flag) {
@@ -131,58 +107,60 @@ std::int64_t count_components(const MeshReport& report, bool ComponentReport::*f
                        [flag](const ComponentReport& component) { return component.*flag; });
 }
 
-void add_repair(const RepairReport& repair, AlignedLines& lines) {
-  std::string_view label = "repair";
-  for (const std::string& line : to_lines(repair)) {
-    lines.add(label, line);
-    label = "";
+// Adds a list, whose first ones have lines.
+void add_list(std::string_view key, std::vector<Facts> all, Facts& facts) {
+  Json& list = facts.list(key);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i < kMaxListed) facts.line("").say("{}", all[i].text());
+    list.push_back(std::move(all[i].json()));
   }
+  if (all.size() > kMaxListed) facts.line("").say("and {} smaller ones", all.size() - kMaxListed);
 }
 
-void add_components(const MeshReport& report, AlignedLines& lines) {
-  if (report.components.size() < 2) return;
+// A single component has no lines.
+void add_components(const MeshReport& report, Facts& facts) {
+  std::vector<Facts> components;
+  for (const ComponentReport& component : report.components) components.push_back(component_facts(component));
+  const std::size_t count = components.size();
+  if (count < 2) {
+    facts.list("components");
+    for (Facts& component : components) facts.json()["components"].push_back(std::move(component.json()));
+    return;
+  }
   const std::int64_t cavities = count_components(report, &ComponentReport::cavity);
   const std::int64_t nested = count_components(report, &ComponentReport::nested);
   const std::int64_t flipped = count_components(report, &ComponentReport::flipped);
-  Listing listing;
-  listing.add_if(true, std::to_string(report.components.size()));
-  listing.add_if(cavities > 0, pluralize(cavities, "cavity", "cavities"));
-  listing.add_if(nested > 0, std::to_string(nested) + " inside another");
-  listing.add_if(flipped > 0, std::to_string(flipped) + " flipped");
-  lines.add("components", listing.text(""));
-  for (std::size_t i = 0; i < report.components.size() && i < kMaxListed; ++i) {
-    lines.add("", component_text(report.components[i]));
-  }
-  if (report.components.size() > kMaxListed) {
-    lines.add("", "and " + std::to_string(report.components.size() - kMaxListed) + " smaller ones");
-  }
+  facts.line("components").say("{}", count);
+  facts.say_if(cavities > 0, pluralize(cavities, "cavity", "cavities"));
+  facts.say_if(nested > 0, "{} inside another", nested);
+  facts.say_if(flipped > 0, "{} flipped", flipped);
+  add_list("components", std::move(components), facts);
 }
 
-void add_holes(const MeshReport& report, AlignedLines& lines) {
-  if (report.holes.empty()) return;
-  lines.add("holes", std::to_string(report.holes.size()));
-  for (std::size_t i = 0; i < report.holes.size() && i < kMaxListed; ++i) {
-    lines.add("", std::to_string(i + 1) + ": " + hole_text(report.holes[i], report.closing));
+void add_holes(const MeshReport& report, Facts& facts) {
+  std::vector<Facts> holes;
+  for (const HoleReport& hole : report.holes) {
+    holes.push_back(hole_facts(holes.size() + 1, hole, report.closing));
   }
-  if (report.holes.size() > kMaxListed) {
-    lines.add("", "and " + std::to_string(report.holes.size() - kMaxListed) + " smaller ones");
-  }
+  if (!holes.empty()) facts.line("holes").say("{}", holes.size());
+  add_list("holes", std::move(holes), facts);
 }
 
-void add_overlap(const MeshReport& report, AlignedLines& lines) {
+void say_overlap(const MeshReport& report, Facts& facts) {
   if (!report.intersecting_pairs) return;
   const std::int64_t pairs = *report.intersecting_pairs;
-  lines.add("intersecting", pluralize(pairs, "pair of faces", "pairs of faces") +
-                                (report.intersections_cut_off ? " at least, too many to count" : ""));
+  facts.line("intersecting").say(pluralize(pairs, "pair of faces", "pairs of faces"));
+  facts.say_if(report.intersections_cut_off, " at least, too many to count");
   const double share = report.overlap_volume.value_or(0.0) / report.volume;
   if (pairs == 0 && !(share > kMinOverlap)) return;
+  facts.line("overlap");
   if (report.overlap_volume) {
     const double counted = share > kMinOverlap ? share : 0.0;
-    lines.add("overlap", format_number(counted * report.volume, 4) + " m^3 count more than once, " +
-                             percent(counted) + " of the volume (within some 0.1 %)");
+    facts.say("{:4} m^3 count more than once, {} of the volume (within some 0.1 %)", counted * report.volume,
+              percent(counted));
   } else {
-    lines.add("overlap", report.closed() ? "not known: what overlaps counts more than once"
-                                         : "not known before the mesh is closed");
+    facts.say(report.closed() ? "not known: what overlaps counts more than once"
+                              : "not known before the mesh is closed");
   }
 }
 
@@ -246,31 +224,69 @@ std::string closing_advice(const MeshReport& report) {
          " of it, and different caps differ by " + percent(disagreement);
 }
 
-std::string to_text(const MeshReport& report) {
-  AlignedLines lines;
-  const std::string source = source_text(report.source);
-  if (!source.empty()) lines.add("source", source);
-  lines.add("surface", state_text(report));
-  lines.add("triangles", std::to_string(report.triangles));
-  if (report.source.polygons.polygons > 0) lines.add("polygons", polygons_text(report.source.polygons));
-  lines.add("vertices", vertices_text(report));
+namespace {
+
+// What a mesh without triangles does not have, although its report has the members.
+Facts surface_facts(const MeshReport& report) {
+  Facts facts;
+  facts.line("edges").say(edges_text(report));
+  facts.line("box").add("box", to_json(report.box)).say(kBoxWords, report.box.min_B, report.box.max_B);
+  facts.add("diagonal", report.diagonal).say(" m, diagonal {:7} m", report.diagonal);
+  facts.line("area").add("area", report.area, "{} m^2");
+  facts.line("volume").add("volume", report.volume, "{} m^3");
+  facts.say_if(!report.closed(), " about the box's centre; meaningless for an open mesh");
+  facts.line("").add("volume_by_axis", report.volume_by_axis, "from x, y, z: {} m^3");
+  facts.line("").add("area_vector", report.area_vector, "integral of n dA: {} m^2");
+  facts.add("closed", report.closed()).add("boundary_edges", report.boundary_edges);
+  facts.add("non_manifold_edges", report.non_manifold_edges).add("balanced_edges", report.balanced_edges);
+  facts.add("misoriented_edges", report.misoriented_edges).add("degenerate_faces", report.degenerate_faces);
+  facts.add("dropped_faces", report.dropped_faces).add("duplicate_faces", report.duplicate_faces);
+  facts.add("intersecting_pairs", report.intersecting_pairs);
+  facts.add("intersections_cut_off", report.intersections_cut_off);
+  facts.add("overlap_volume", report.overlap_volume);
+  add_components(report, facts);
+  add_holes(report, facts);
+  say_overlap(report, facts);
+  facts.add("closing", to_json(report.closing)).add("advice", closing_advice(report));
+  facts.add("turned", report.flipped);
+  if (report.flipped) facts.line("flipped").say("was inside out: the winding of all faces was reversed");
+  return facts;
+}
+
+}  // namespace
+
+Facts mesh_report_facts(const MeshReport& report) {
+  Facts source = source_facts(report.source);
+  std::string polygons;
+  if (report.source.polygons.polygons > 0) {
+    Facts split = polygons_facts(report.source.polygons);
+    polygons = split.text();
+    source.add("polygons", std::move(split.json()));
+  }
   const std::string faces = faces_text(report);
-  if (!faces.empty()) lines.add("faces", faces);
-  add_repair(report.repair, lines);
-  if (report.triangles == 0) return report.name + "\n" + lines.text();
-  lines.add("edges", edges_text(report));
-  lines.add("box", "from " + coordinates(report.box.min_B) + " to " + coordinates(report.box.max_B) +
-                       " m, diagonal " + format_number(report.diagonal, 7) + " m");
-  lines.add("area", format_number(report.area) + " m^2");
-  lines.add("volume", format_number(report.volume) + " m^3" +
-                          (report.closed() ? "" : " about the box's centre; meaningless for an open mesh"));
-  lines.add("", "from x, y, z: " + format_vector(report.volume_by_axis) + " m^3");
-  lines.add("", "integral of n dA: " + format_vector(report.area_vector) + " m^2");
-  add_components(report, lines);
-  add_holes(report, lines);
-  add_overlap(report, lines);
-  if (report.flipped) lines.add("flipped", "was inside out: the winding of all faces was reversed");
-  return report.name + "\n" + lines.text();
+  const bool welded = report.weld == WeldKind::kTolerance;
+  Facts facts;
+  facts.heading("{}", report.name).add("name", report.name);
+  if (!source.text().empty()) facts.line("source").say("{}", source.text());
+  facts.add("source", std::move(source.json()));
+  facts.line("surface").say("{}", state_text(report));
+  facts.line("triangles").add("triangles", report.triangles, "{}");
+  if (!polygons.empty()) facts.heading(polygons);
+  facts.line("vertices").add("vertices_stored", report.vertices_stored, "{} stored");
+  facts.add("vertices_welded", report.vertices_welded, "{} after welding");
+  facts.add("weld", welded ? "tolerance" : "exact");
+  facts.add("weld_largest_move", report.weld_largest_move,
+            welded ? "; cracks closed by moving vertices up to {} m" : "");
+  if (!faces.empty()) facts.line("faces").say(faces);
+  facts.include("repair", repair_facts(report.repair));
+  const Facts surface = surface_facts(report);
+  if (report.triangles > 0) facts.heading(surface.text());
+  facts.update(surface);
+  return facts;
+}
+
+std::string to_text(const MeshReport& report) {
+  return mesh_report_facts(report).text();
 }
 
 }  // namespace buoyancy

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
+#include <utility>
 
-#include "base/format.h"
+#include "geometry/mesh_report_facts.h"
 
 namespace buoyancy {
 namespace {
@@ -71,30 +71,40 @@ bool is_flat(const RepairReport& report) {
   return report.cap_disagreement <= 1e-6 * report.cap_bulge;
 }
 
-std::string step_text(const RepairStep& step, const RepairReport& report) {
-  const KindText& kind = text_of(step.kind);
-  std::string text = pluralize(step.count, kind.singular, kind.plural);
-  text += kind.done;
-  if (step.kind == RepairKind::kCloseHoles)
-    text += is_flat(report) ? " by flat caps" : " by caps of least area";
-  text += ", " + format_number(step.area, 4) + " m^2";
-  if (step.kind == RepairKind::kInsertVertices) {
-    text += ", up to " + format_number(step.max_move, 3) + " m beside them";
-  } else if (step.kind == RepairKind::kWeld || step.max_move > 0.0) {
-    text += ", moved up to " + format_number(step.max_move, 3) + " m";
-  }
-  if (!step.before && !step.after) return text;
-  return text + "; volume " + volume_text(step.before) + " -> " + volume_text(step.after);
+Json to_json(const std::optional<EnclosedSolid>& solid) {
+  if (!solid) return nullptr;
+  return {{"volume", solid->volume}, {"centroid", solid->centroid_B}};
 }
 
-std::string skipped_text(const SkippedRepair& skipped) {
+Facts step_facts(const RepairStep& step, const RepairReport& report) {
+  const KindText& kind = text_of(step.kind);
+  Facts facts;
+  facts.add("step", kind.name).add("count", step.count);
+  facts.say(pluralize(step.count, kind.singular, kind.plural)).say(kind.done);
+  if (step.kind == RepairKind::kCloseHoles) {
+    facts.say(is_flat(report) ? " by flat caps" : " by caps of least area");
+  }
+  facts.add("area", step.area, "{:4} m^2").add("largest_move", step.max_move);
+  if (step.kind == RepairKind::kInsertVertices) {
+    facts.say("up to {:3} m beside them", step.max_move);
+  } else if (step.kind == RepairKind::kWeld || step.max_move > 0.0) {
+    facts.say("moved up to {:3} m", step.max_move);
+  }
+  facts.add("before", to_json(step.before)).add("after", to_json(step.after));
+  facts.say_if(step.before || step.after, "; volume {} -> {}", volume_text(step.before),
+               volume_text(step.after));
+  return facts;
+}
+
+Facts skipped_facts(const SkippedRepair& skipped) {
   const bool of_holes = skipped.kind == RepairKind::kCloseHoles;
-  std::string text = of_holes ? "not done: " : "not tried further: ";
-  text += to_string(skipped.kind);
-  text += " (" + std::to_string(skipped.faces) + (of_holes ? " holes or edges): " : " faces or edges): ");
-  text += to_string(skipped.obstacle);
-  if (skipped.share > 0.0) text += ", " + format_number(100.0 * skipped.share, 3) + " %";
-  return text;
+  Facts facts;
+  facts.say(of_holes ? "not done: {}" : "not tried further: {}", to_string(skipped.kind));
+  facts.add("step", to_string(skipped.kind)).add("because", to_string(skipped.obstacle));
+  facts.add("faces", skipped.faces, of_holes ? " ({} holes or edges)" : " ({} faces or edges)");
+  facts.say(": {}", to_string(skipped.obstacle)).add("share", skipped.share);
+  facts.say_if(skipped.share > 0.0, "{:3} %", 100.0 * skipped.share);
+  return facts;
 }
 
 }  // namespace
@@ -117,25 +127,35 @@ void append(const RepairReport& more, RepairReport& report) {
   report.cap_disagreement += more.cap_disagreement;
 }
 
-std::vector<std::string> to_lines(const RepairReport& report) {
-  std::vector<std::string> lines;
-  lines.reserve(report.steps.size() + report.skipped.size() + 3);
-  for (const RepairStep& step : report.steps) lines.push_back(step_text(step, report));
-  for (const SkippedRepair& skipped : report.skipped) lines.push_back(skipped_text(skipped));
+Facts repair_facts(const RepairReport& report) {
+  Facts facts;
+  const auto begin_line = [&facts] { facts.line(facts.text().empty() ? "repair" : ""); };
+  const auto add_to = [&](Json& list, Facts one) {
+    begin_line();
+    facts.say("{}", one.text());
+    list.push_back(std::move(one.json()));
+  };
+  Json& steps = facts.list("steps");
+  for (const RepairStep& step : report.steps) add_to(steps, step_facts(step, report));
+  Json& skipped = facts.list("skipped");
+  for (const SkippedRepair& one : report.skipped) add_to(skipped, skipped_facts(one));
   if (report.volume_bound > 0.0) {
-    lines.push_back("moved vertices change the volume by at most " + format_number(report.volume_bound, 3) +
-                    " m^3");
+    begin_line();
+    facts.say("moved vertices change the volume by at most {:3} m^3", report.volume_bound);
   }
   if (report.cap_bulge > 0.0) {
-    lines.push_back("closed holes may hide some " + format_number(report.cap_bulge, 3) +
-                    " m^3 (estimate: a hemisphere over each)");
+    begin_line();
+    facts.say("closed holes may hide some {:3} m^3 (estimate: a hemisphere over each)", report.cap_bulge);
   }
   const auto asked_for = [](const RepairStep& step) { return step.kind == RepairKind::kCloseHoles; };
   if (std::any_of(report.steps.begin(), report.steps.end(), asked_for)) {
-    lines.push_back("different caps over them differ by " + format_number(report.cap_disagreement, 3) +
-                    " m^3 (estimate" + (is_flat(report) ? "; exact if the openings are flat)" : ")"));
+    begin_line();
+    facts.say("different caps over them differ by {:3} m^3 (estimate{})", report.cap_disagreement,
+              is_flat(report) ? "; exact if the openings are flat" : "");
   }
-  return lines;
+  facts.add("volume_bound", report.volume_bound).add("cap_bulge", report.cap_bulge);
+  facts.add("cap_disagreement", report.cap_disagreement);
+  return facts;
 }
 
 }  // namespace buoyancy

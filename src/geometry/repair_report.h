@@ -86,7 +86,4 @@ struct RepairReport {
 // Adds what a later repair of the same body, or that of another part of it, did.
 void append(const RepairReport& more, RepairReport& report);
 
-// Two lines or more: what was done, then what it does to the volume. No line ends in a newline.
-std::vector<std::string> to_lines(const RepairReport& report);
-
 }  // namespace buoyancy

@@ -7,6 +7,7 @@
 
 #include <pybind11/stl.h>
 
+#include "base/format.h"
 #include "messages/wire_layout.h"
 #include "python/call_arguments.h"
 #include "python/slices.h"
@@ -57,14 +58,10 @@ py::object statuses(py::handle self) {
 // "pose 3: BAD_QUATERNION: the norm ..."
 std::string failure_text(Wrenches& wrenches, std::size_t i) {
   const auto status = static_cast<BodyStatus>(wrenches.statuses()[i]);
-  std::string text = wrenches.body_ids.empty()
-                         ? (wrenches.single() ? "the pose" : "pose " + std::to_string(i))
-                         : "body " + std::to_string(wrenches.body_ids[i]);
-  text += ": ";
-  text += to_string(status);
-  text += ": ";
-  text += explain(status);
-  return text;
+  const std::string which = wrenches.body_ids.empty()
+                                ? (wrenches.single() ? "the pose" : "pose " + std::to_string(i))
+                                : "body " + std::to_string(wrenches.body_ids[i]);
+  return format_text("{}: {}: {}", which, to_string(status), explain(status));
 }
 
 void raise_for_status(py::handle self) {

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <limits>
 
+#include "base/format.h"
+
 namespace buoyancy {
 namespace {
 
@@ -92,12 +94,7 @@ std::vector<std::string> gap_lines(const SequenceGaps& gaps, const std::string& 
     }
     const std::size_t more = session.gaps.size() - std::min(session.gaps.size(), kGapsPerLine);
     if (more > 0) places += " and " + std::to_string(more) + " more gaps";
-    std::string& line = lines.emplace_back("session " + std::to_string(session.session_id) + ": ");
-    line += std::to_string(missing);
-    line += " ";
-    line += what;
-    line += " missing,";
-    line += places;
+    lines.push_back(format_text("session {}: {} {} missing,{}", session.session_id, missing, what, places));
   }
   return lines;
 }

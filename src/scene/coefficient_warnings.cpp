@@ -15,11 +15,6 @@ namespace {
 
 constexpr std::array<std::string_view, 6> kAxes{"x", "y", "z", "about x", "about y", "about z"};
 
-// Derived numbers are rounded.
-std::string format_rounded(double value) {
-  return format_number(value, 4);
-}
-
 // Searches matrices that it has searched before only once.
 class DrivingTwists {
  public:
@@ -43,8 +38,9 @@ void warn_of_driving_drag(const Body& body, const Mat6& quadratic, DrivingTwists
   if (!twist) return;
   list.add(body,
            {"",
-            "[body.drag] quadratic drives the body at a twist of [" + format_vector(twist->head<3>(), 4) +
-                ", " + format_vector(twist->tail<3>(), 4) + "] (m/s and rad/s, body axes)",
+            format_text(
+                "[body.drag] quadratic drives the body at a twist of [{:4}, {:4}] (m/s and rad/s, body axes)",
+                Vec3(twist->head<3>()), Vec3(twist->tail<3>())),
             "drag that opposes every motion: twist . D2 (|twist| o twist) at least 0",
             "large elements off the diagonal, which were fitted for motions along one axis at a time",
             "Reduce them, or leave them out: energy may grow without a bound at such motions"});
@@ -58,13 +54,11 @@ void warn_of_far_center(const Body& body, std::string_view table, const Vec3& ce
   const Vec3 nearest = from_center.cwiseMax(mesh.box_min).cwiseMin(mesh.box_max);
   const double distance = (from_center - nearest).norm();
   if (!(distance > mesh.diagonal)) return;
-  list.add(body, {"",
-                  std::string(table) + " center = [" + format_vector(center_B) + "] is " +
-                      format_rounded(distance) + " m from the mesh",
-                  "a point in or near the mesh, whose box has a diagonal of " +
-                      format_rounded(mesh.diagonal) + " m",
-                  "a centre in another frame or unit: it is in m, in the frame of the mesh after scale",
-                  "Leave center out for the centre of mass, or correct it"});
+  list.add(body,
+           {"", format_text("{} center = [{}] is {:4} m from the mesh", table, center_B, distance),
+            format_text("a point in or near the mesh, whose box has a diagonal of {:4} m", mesh.diagonal),
+            "a centre in another frame or unit: it is in m, in the frame of the mesh after scale",
+            "Leave center out for the centre of mass, or correct it"});
 }
 
 // limit: per coordinate, the largest number that a body of this size may have. The first that exceeds it is
@@ -74,16 +68,13 @@ void warn_of_size(const Body& body, const std::string& name, const Mat6& matrix,
                   BodyWarningList& list) {
   for (Eigen::Index i = 0; i < 6; ++i) {
     if (!(matrix(i, i) > limit[i])) continue;
-    std::string suffix{' '};
-    suffix += i < 3 ? unit : rotation_unit;
-    std::string actual = name + ' ';
-    actual += kAxes[static_cast<std::size_t>(i)];
-    actual += " = ";
-    actual += format_number(matrix(i, i)) + suffix;
-    list.add(body, {"", std::move(actual),
-                    std::string(expected) + ": " + format_rounded(limit[i]) + suffix + " for this mesh",
-                    "coefficients of a vehicle of another size, or a mesh in another unit",
-                    "Check both; set scale for a mesh in millimetres"});
+    const std::string_view of_axis = i < 3 ? unit : rotation_unit;
+    list.add(
+        body,
+        {"", format_text("{} {} = {} {}", name, kAxes[static_cast<std::size_t>(i)], matrix(i, i), of_axis),
+         format_text("{}: {:4} {} for this mesh", expected, limit[i], of_axis),
+         "coefficients of a vehicle of another size, or a mesh in another unit",
+         "Check both; set scale for a mesh in millimetres"});
     return;
   }
 }

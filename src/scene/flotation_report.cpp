@@ -1,83 +1,83 @@
 #include "scene/flotation_report.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
-#include "base/format.h"
 #include "scene/start_pose.h"
 
 namespace buoyancy {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kMaxLines = 12;
 
-// Derived numbers are rounded, and what is 0 but for rounding is 0; the JSON report has all digits.
-std::string rounded(double value, double noise) {
-  return format_number(std::abs(value) < noise ? 0.0 : value, 4);
+// What is 0 but for rounding is 0.
+double without_noise(double value, double noise) {
+  return std::abs(value) < noise ? 0.0 : value;
 }
 
-std::string attitude_text(const Equilibrium& at, bool reached) {
-  const std::array<double, 2>& heights = at.state.hydrostatics.metacentric_heights;
-  std::string text = reached ? "              * " : "                ";
-  text += "draft " + rounded(at.draft, 0.0) + " m, heel " + rounded(at.angles.heel * kDegrees, 1e-6);
-  text += " deg, trim " + rounded(at.angles.trim * kDegrees, 1e-6) + " deg, GM " + rounded(heights[0], 1e-12);
-  text += " and " + rounded(heights[1], 1e-12) + " m, energy " + rounded(at.state.energy, 0.0) + " J";
-  if (at.family == AttitudeFamily::kCurve) text += ", one of a curve";
-  if (at.family == AttitudeFamily::kSphere) text += ", any attitude";
-  return text + "\n";
-}
-
-Json to_json(const Equilibrium& at, bool reached, const Body& body, const Water& water) {
+Facts attitude_facts(const Equilibrium& at, bool reached, const Body& body, const Water& water) {
   const Pose pose = placed_pose(at, body.dynamics, water);
-  return {{"reached", reached},
-          {"position", {pose.p_WB.x(), pose.p_WB.y(), pose.p_WB.z()}},
-          {"quaternion_wxyz", {pose.q_WB.w(), pose.q_WB.x(), pose.q_WB.y(), pose.q_WB.z()}},
-          {"draft", at.draft},
-          {"heel", at.angles.heel * kDegrees},
-          {"trim", at.angles.trim * kDegrees},
-          {"metacentric_heights", at.state.hydrostatics.metacentric_heights},
-          {"energy", at.state.energy},
-          {"family", to_string(at.family)}};
+  const std::array<double, 2>& heights = at.state.hydrostatics.metacentric_heights;
+  const double heel = at.angles.heel * kDegrees;
+  const double trim = at.angles.trim * kDegrees;
+  Facts facts;
+  facts.line(reached ? "            *" : "").add("reached", reached);
+  facts.add("position", pose.p_WB).add("quaternion_wxyz", pose.q_WB);
+  facts.add("draft", at.draft, "draft {:4} m");
+  facts.add("heel", heel).say("heel {:4} deg", without_noise(heel, 1e-6));
+  facts.add("trim", trim).say("trim {:4} deg", without_noise(trim, 1e-6));
+  facts.add("metacentric_heights", heights);
+  facts.say("GM {:4} and {:4} m", without_noise(heights[0], 1e-12), without_noise(heights[1], 1e-12));
+  facts.add("energy", at.state.energy, "energy {:4} J");
+  facts.add("family", to_string(at.family));
+  facts.say_if(at.family == AttitudeFamily::kCurve, "one of a curve");
+  facts.say_if(at.family == AttitudeFamily::kSphere, "any attitude");
+  return facts;
+}
+
+Facts flotation_facts(const BodyFlotation& flotation, const Body& body, const Water& water) {
+  const bool at_equilibrium = body.dynamics.start == StartKind::kEquilibrium;
+  const std::size_t count = flotation.attitudes.size();
+  Facts facts;
+  facts.add("outcome", to_string(flotation.outcome));
+  facts.add("start", at_equilibrium ? "equilibrium" : "pose").add("mass", flotation.mass);
+  if (flotation.reached && at_equilibrium) {
+    facts.line("start").say("at equilibrium, from its orientation");
+  }
+  if (count > 0) {
+    facts.line("attitudes")
+        .say(pluralize(static_cast<std::int64_t>(count), "stable attitude", "stable attitudes"))
+        .say("heel and trim 0 with the body's z axis up")
+        .say_if(flotation.reached.has_value(), "; * is where it turns to from its orientation");
+  }
+  Json& attitudes = facts.list("attitudes");
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool reached = flotation.reached == i;
+    Facts one = attitude_facts(flotation.attitudes[i], reached, body, water);
+    if (i < kMaxLines || reached) facts.heading(one.text());
+    attitudes.push_back(std::move(one.json()));
+  }
+  if (count > kMaxLines) facts.line("").say("all are listed by --check --json");
+  facts.add("truncated", flotation.is_truncated);
+  facts.add("turn", flotation.reached ? std::optional(flotation.turn * kDegrees) : std::nullopt);
+  facts.add("starts_unstable", flotation.starts_unstable);
+  return facts;
 }
 
 }  // namespace
 
-std::string flotation_text(const FlotationOfBody& entry, const Body& body) {
-  if (entry.left_out) return "  attitudes     left out: the bodies before it have too many vertices\n";
-  if (!entry.flotation || entry.flotation->attitudes.empty()) return "";
-  const BodyFlotation& flotation = *entry.flotation;
-  std::string text;
-  if (flotation.reached && body.dynamics.start == StartKind::kEquilibrium) {
-    text += "  start         at equilibrium, from its orientation\n";
+void add_flotation(const FlotationOfBody& entry, const Body& body, const Water& water, Facts& facts) {
+  if (!body.dynamics.given) return;
+  if (entry.flotation) {
+    facts.include("flotation", flotation_facts(*entry.flotation, body, water));
+  } else {
+    facts.add("flotation", nullptr);
   }
-  const std::size_t count = flotation.attitudes.size();
-  text +=
-      "  attitudes     " + pluralize(static_cast<std::int64_t>(count), "stable attitude", "stable attitudes");
-  text += ", heel and trim 0 with the body's z axis up";
-  text += flotation.reached ? "; * is where it turns to from its orientation\n" : "\n";
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool reached = flotation.reached == i;
-    if (i < kMaxLines || reached) text += attitude_text(flotation.attitudes[i], reached);
-  }
-  if (count > kMaxLines) text += "                all are listed by --check --json\n";
-  return text;
-}
-
-Json to_json(const BodyFlotation& flotation, const Body& body, const Water& water) {
-  Json attitudes = Json::array();
-  for (std::size_t i = 0; i < flotation.attitudes.size(); ++i) {
-    attitudes.push_back(to_json(flotation.attitudes[i], flotation.reached == i, body, water));
-  }
-  return {{"outcome", to_string(flotation.outcome)},
-          {"start", body.dynamics.start == StartKind::kEquilibrium ? "equilibrium" : "pose"},
-          {"mass", flotation.mass},
-          {"attitudes", std::move(attitudes)},
-          {"truncated", flotation.is_truncated},
-          {"turn", flotation.reached ? Json(flotation.turn * kDegrees) : Json(nullptr)},
-          {"starts_unstable", flotation.starts_unstable}};
+  if (entry.left_out) facts.line("attitudes").say("left out: the bodies before it have too many vertices");
 }
 
 }  // namespace buoyancy

@@ -56,13 +56,13 @@ void warn_of_unit(const Body& body, BodyWarningList& list) {
   const double scale = plausible_scale(density);
   std::string hint = "Correct the mass, or the size of the mesh";
   if (scale != 0.0) {
-    hint = "With its lengths times " + format_number(scale, 4) + " the density is " +
-           format_number(density / (scale * scale * scale), 3) + " kg/m^3";
+    hint = format_text("With its lengths times {:4} the density is {:3} kg/m^3", scale,
+                       density / (scale * scale * scale));
   }
   list.add(body, {"",
-                  "mass over volume = " + format_number(*body.dynamics.mass, 4) + " kg / " +
-                      format_number(mesh.volume, 4) + " m^3 = " + format_number(density, 3) + " kg/m^3",
-                  format_number(kMinDensity) + " to " + format_number(kMaxDensity) + " kg/m^3",
+                  format_text("mass over volume = {:4} kg / {:4} m^3 = {:3} kg/m^3", *body.dynamics.mass,
+                              mesh.volume, density),
+                  format_text("{} to {} kg/m^3", kMinDensity, kMaxDensity),
                   "a mesh in another unit than metres, such as millimetres", std::move(hint)});
 }
 

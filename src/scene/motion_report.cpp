@@ -1,14 +1,11 @@
 #include "scene/motion_report.h"
 
 #include <cmath>
+#include <string>
 #include <string_view>
-
-#include "base/format.h"
 
 namespace buoyancy {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // A lever within this part of the mesh's diagonal is rounding, or that of a generated mesh.
 constexpr double kNoLever = 1e-6;
@@ -25,18 +22,23 @@ std::string_view to_string(ImmersionScaling scaling) {
   return "none";
 }
 
-std::string_view to_string(VerticalBalance balance) {
+struct BalanceName {
+  std::string_view name;
+  std::string_view words;
+};
+
+BalanceName name_of(VerticalBalance balance) {
   switch (balance) {
     case VerticalBalance::kFloats:
-      return "floats";
+      return {"floats", ""};  // the draft says so
     case VerticalBalance::kSinks:
-      return "sinks";
+      return {"sinks", "sinks: heavier than the water that it displaces"};
     case VerticalBalance::kNeutral:
-      return "neutrally buoyant";
+      return {"neutrally buoyant", "neutrally buoyant"};
     case VerticalBalance::kUnknown:
       break;
   }
-  return "unknown";
+  return {"unknown", "takes in water at this attitude before it floats"};
 }
 
 std::string_view to_string(StepLimit limit) {
@@ -53,176 +55,134 @@ std::string_view to_string(StepLimit limit) {
   return "none";
 }
 
-// Derived numbers are rounded; the JSON report has all digits.
-std::string format_rounded(double value) {
-  return format_number(value, 4);
-}
-
-// g++ 12 warns about overflow in sums of strings that begin with a literal.
-template <typename... Parts>
-std::string joined(const Parts&... parts) {
-  std::string text;
-  ((text += parts), ...);
-  return text;
-}
-
-bool is_diagonal(const Mat6& matrix) {
-  return matrix == Mat6(matrix.diagonal().asDiagonal());
-}
-
-std::string diagonal_text(const Mat6& matrix) {
-  return joined(is_diagonal(matrix) ? "[" : "36 numbers, diagonal [",
-                format_vector(matrix.diagonal().head<3>()), ", ", format_vector(matrix.diagonal().tail<3>()),
-                "]");
-}
-
-std::string placed_text(const Vec3& center_B, ImmersionScaling immersion) {
-  return joined("                about [", format_vector(center_B), "] m, immersion \"", to_string(immersion),
-                "\"\n");
-}
-
-std::string motion_text(const char* label, const NaturalMotion& motion, const char* unit, bool has_drag) {
-  if (!(motion.frequency > 0.0)) return joined(label, "nothing restores it\n");
-  std::string text = joined(label, "period ", format_rounded(motion.period()), " s");
-  if (has_drag) text += joined(", damping ratio ", format_rounded(motion.damping_ratio));
-  if (motion.damping_ratio_at_amplitude != motion.damping_ratio) {
-    text += joined(", ", format_rounded(motion.damping_ratio_at_amplitude), " at an amplitude of ",
-                   format_rounded(motion.amplitude), " ", unit);
-  }
-  return text + "\n";
-}
-
-std::string balance_text(const BodyMotions& motions) {
-  switch (motions.balance) {
-    case VerticalBalance::kFloats:
-      return joined("floats at a draft of ", format_rounded(*motions.draft), " m");
-    case VerticalBalance::kSinks:
-      return "sinks: heavier than the water that it displaces";
-    case VerticalBalance::kNeutral:
-      return "neutrally buoyant";
-    case VerticalBalance::kUnknown:
-      break;
-  }
-  return "takes in water at this attitude before it floats";
-}
-
-std::string terminal_velocity_text(const BodyMotions& motions) {
-  const double velocity = motions.terminal_velocity.value_or(0.0);
-  if (velocity == 0.0) return "";
-  return joined("  terminal      ", velocity > 0.0 ? "rises" : "sinks", " at ",
-                format_rounded(std::abs(velocity)), " m/s, fully submerged\n");
-}
-
-std::string known_text(const BodyMotions& motions, const Body& body) {
-  const bool has_drag = body.hydrodynamics != nullptr && body.hydrodynamics->coefficients().drag;
-  std::string text = joined("  balance       ", balance_text(motions));
-  if (motions.turning_lever > kNoLever * body.prepared_mesh->mesh.diagonal) {
-    const bool floats = motions.balance == VerticalBalance::kFloats;
-    text += joined(floats ? " at its orientation, from which it turns" : ", and turns", ": buoyancy acts ",
-                   format_rounded(motions.turning_lever), " m beside the centre of mass");
-  }
-  text += "\n";
-  text += terminal_velocity_text(motions);
-  if (motions.natural) {
-    text += motion_text("  heave         ", motions.natural->heave, "m", has_drag);
-    text += motion_text("  roll          ", motions.natural->roll, "rad", has_drag);
-    text += motion_text("  pitch         ", motions.natural->pitch, "rad", has_drag);
-    text += joined("                of small motions about its orientation, ",
-                   motions.balance == VerticalBalance::kFloats ? "afloat\n" : "fully submerged\n");
-  }
-  if (std::isfinite(motions.max_explicit_step)) {
-    text += joined("  explicit step below ", format_rounded(motions.max_explicit_step), " s, ",
-                   to_string(motions.step_limit), "\n");
-  }
-  if (motions.added_mass_ratio > 1.0) {
-    text += joined("  mass ratio    added mass up to ", format_rounded(motions.added_mass_ratio),
-                   " times the mass: as an explicit force it diverges; use the matrix s A\n");
-  }
-  return text;
-}
-
-std::string unknown_text(const MotionsOfBody& entry, const Body& body, const Water& water) {
-  if (!body.dynamics.given) {
-    return body.hydrodynamics == nullptr ? "" : "  motions       unknown: no mass in [body.client]\n";
-  }
-  if (entry.left_out) return "  motions       left out: the bodies before it have too many vertices\n";
-  const Expected<BodyMass> mass = mass_of_body(body, water);
-  return joined("  motions       unknown: ", mass ? "numbers beyond double's range" : mass.error().actual,
-                "\n");
-}
-
-Json to_json(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-// As in the scene file: six numbers, or 36 row by row.
-Json to_json(const Mat6& matrix) {
-  Json numbers = Json::array();
-  const bool diagonal = is_diagonal(matrix);
+// As in the scene file: six numbers of a diagonal matrix, or 36 row by row. words: where the text shows it.
+void add_matrix(std::string_view key, const Mat6& matrix, std::string_view words, Facts& facts) {
+  const bool is_diagonal = matrix == Mat6(matrix.diagonal().asDiagonal());
+  const Vec6 diagonal = matrix.diagonal();
+  facts.say(words, is_diagonal ? "" : "36 numbers, diagonal ", Vec3(diagonal.head<3>()),
+            Vec3(diagonal.tail<3>()));
+  Json& numbers = facts.list(key);
   for (Eigen::Index row = 0; row < 6; ++row) {
     for (Eigen::Index column = 0; column < 6; ++column) {
-      if (row == column || !diagonal) numbers.push_back(matrix(row, column));
+      if (row == column || !is_diagonal) numbers.push_back(matrix(row, column));
     }
   }
-  return numbers;
 }
 
-Json to_json(const NaturalMotion& motion) {
-  if (!(motion.frequency > 0.0)) return nullptr;
-  return {{"period", motion.period()},
-          {"damping_ratio", motion.damping_ratio},
-          {"amplitude", motion.amplitude},
-          {"damping_ratio_at_amplitude", motion.damping_ratio_at_amplitude}};
+void add_place(const Vec3& center_B, ImmersionScaling immersion, Facts& facts) {
+  facts.line("").add("center", center_B, "about [{}] m");
+  facts.add("immersion", to_string(immersion), "immersion \"{}\"");
+}
+
+Facts drag_facts(const DragCoefficients& drag) {
+  Facts facts;
+  facts.line("drag");
+  add_matrix("linear", drag.linear, "linear {}[{}, {}]", facts);
+  facts.line("");
+  add_matrix("quadratic", drag.quadratic, "quadratic {}[{}, {}]", facts);
+  add_place(drag.center_B, drag.immersion, facts);
+  return facts;
+}
+
+Facts added_mass_facts(const AddedMassCoefficients& added_mass) {
+  Facts facts;
+  facts.line("added mass");
+  add_matrix("matrix", added_mass.matrix, "{}[{}, {}]", facts);
+  add_place(added_mass.center_B, added_mass.immersion, facts);
+  return facts;
+}
+
+// unit: of the amplitude.
+Facts natural_facts(std::string_view name, const NaturalMotion& motion, std::string_view unit,
+                    bool has_drag) {
+  Facts facts;
+  facts.line(name);
+  facts.add("period", motion.period(), "period {:4} s");
+  facts.add("damping_ratio", motion.damping_ratio, has_drag ? "damping ratio {:4}" : "");
+  facts.add("amplitude", motion.amplitude);
+  facts.add("damping_ratio_at_amplitude", motion.damping_ratio_at_amplitude);
+  facts.say_if(motion.damping_ratio_at_amplitude != motion.damping_ratio, "{:4} at an amplitude of {:4} {}",
+               motion.damping_ratio_at_amplitude, motion.amplitude, unit);
+  return facts;
+}
+
+void add_natural(std::string_view name, const NaturalMotion& motion, std::string_view unit, bool has_drag,
+                 Facts& facts) {
+  if (motion.frequency > 0.0) {
+    facts.include(name, natural_facts(name, motion, unit, has_drag));
+  } else {
+    facts.line(name).add(name, nullptr).say("nothing restores it");
+  }
+}
+
+Facts motion_facts(const BodyMotions& motions, const Body& body) {
+  const bool has_drag = body.hydrodynamics != nullptr && body.hydrodynamics->coefficients().drag;
+  const bool floats = motions.balance == VerticalBalance::kFloats;
+  const BalanceName balance = name_of(motions.balance);
+  const double terminal_velocity = motions.terminal_velocity.value_or(0.0);
+  Facts facts;
+  facts.line("balance").add("balance", balance.name).say_if(!floats, balance.words);
+  facts.add("draft", motions.draft, floats ? "floats at a draft of {:4} m" : "");
+  const bool turns = motions.turning_lever > kNoLever * body.prepared_mesh->mesh.diagonal;
+  facts.say_if(turns, floats ? " at its orientation, from which it turns" : "and turns");
+  facts.add("turning_lever", motions.turning_lever,
+            turns ? ": buoyancy acts {:4} m beside the centre of mass" : "");
+  facts.add("terminal_velocity", motions.terminal_velocity);
+  if (terminal_velocity != 0.0) {
+    facts.line("terminal")
+        .say("{} at {:4} m/s, fully submerged", terminal_velocity > 0.0 ? "rises" : "sinks",
+             std::abs(terminal_velocity));
+  }
+  if (motions.natural) {
+    add_natural("heave", motions.natural->heave, "m", has_drag, facts);
+    add_natural("roll", motions.natural->roll, "rad", has_drag, facts);
+    add_natural("pitch", motions.natural->pitch, "rad", has_drag, facts);
+    facts.line("").say("of small motions about its orientation");
+    facts.say(floats ? "afloat" : "fully submerged");
+  } else {
+    facts.add("heave", nullptr).add("roll", nullptr).add("pitch", nullptr);
+  }
+  const std::string_view limit = to_string(motions.step_limit);
+  facts.add("max_explicit_step", motions.max_explicit_step).add("step_limit", limit);
+  if (std::isfinite(motions.max_explicit_step)) {
+    facts.line("explicit step").say("below {:4} s, {}", motions.max_explicit_step, limit);
+  }
+  facts.add("added_mass_ratio", motions.added_mass_ratio);
+  if (motions.added_mass_ratio > 1.0) {
+    facts.line("mass ratio")
+        .say("added mass up to {:4} times the mass: as an explicit force it diverges; use the matrix s A",
+             motions.added_mass_ratio);
+  }
+  return facts;
+}
+
+// Empty for a body to which they do not apply.
+std::string why_unknown(const MotionsOfBody& entry, const Body& body, const Water& water) {
+  if (!body.dynamics.given) {
+    return body.hydrodynamics == nullptr ? "" : "unknown: no mass in [body.client]";
+  }
+  if (entry.left_out) return "left out: the bodies before it have too many vertices";
+  const Expected<BodyMass> mass = mass_of_body(body, water);
+  return format_text("unknown: {}", mass ? "numbers beyond double's range" : mass.error().actual);
 }
 
 }  // namespace
 
-std::string coefficients_text(const Body& body) {
-  if (body.hydrodynamics == nullptr) return "";
+void add_coefficients(const Body& body, Facts& facts) {
+  if (body.hydrodynamics == nullptr) return;
   const HydrodynamicCoefficients& coefficients = body.hydrodynamics->coefficients();
-  std::string text;
-  if (coefficients.drag) {
-    const DragCoefficients& drag = *coefficients.drag;
-    text += joined("  drag          linear ", diagonal_text(drag.linear), "\n");
-    text += joined("                quadratic ", diagonal_text(drag.quadratic), "\n");
-    text += placed_text(drag.center_B, drag.immersion);
+  if (coefficients.drag) facts.include("drag", drag_facts(*coefficients.drag));
+  if (coefficients.added_mass) facts.include("added_mass", added_mass_facts(*coefficients.added_mass));
+}
+
+void add_motions(const MotionsOfBody& entry, const Body& body, const Water& water, Facts& facts) {
+  if (entry.motions) {
+    facts.include("motions", motion_facts(*entry.motions, body));
+    return;
   }
-  if (coefficients.added_mass) {
-    text += joined("  added mass    ", diagonal_text(coefficients.added_mass->matrix), "\n");
-    text += placed_text(coefficients.added_mass->center_B, coefficients.added_mass->immersion);
-  }
-  return text;
-}
-
-std::string motions_text(const MotionsOfBody& entry, const Body& body, const Water& water) {
-  return entry.motions ? known_text(*entry.motions, body) : unknown_text(entry, body, water);
-}
-
-Json to_json(const DragCoefficients& drag) {
-  return {{"linear", to_json(drag.linear)},
-          {"quadratic", to_json(drag.quadratic)},
-          {"center", to_json(drag.center_B)},
-          {"immersion", to_string(drag.immersion)}};
-}
-
-Json to_json(const AddedMassCoefficients& added_mass) {
-  return {{"matrix", to_json(added_mass.matrix)},
-          {"center", to_json(added_mass.center_B)},
-          {"immersion", to_string(added_mass.immersion)}};
-}
-
-Json to_json(const BodyMotions& motions) {
-  const std::optional<NaturalMotions>& natural = motions.natural;
-  return {{"balance", to_string(motions.balance)},
-          {"draft", motions.draft ? Json(*motions.draft) : Json(nullptr)},
-          {"turning_lever", motions.turning_lever},
-          {"terminal_velocity", motions.terminal_velocity ? Json(*motions.terminal_velocity) : Json(nullptr)},
-          {"heave", natural ? to_json(natural->heave) : Json(nullptr)},
-          {"roll", natural ? to_json(natural->roll) : Json(nullptr)},
-          {"pitch", natural ? to_json(natural->pitch) : Json(nullptr)},
-          {"max_explicit_step", motions.max_explicit_step},
-          {"step_limit", to_string(motions.step_limit)},
-          {"added_mass_ratio", motions.added_mass_ratio}};
+  if (body.dynamics.given) facts.add("motions", nullptr);
+  const std::string reason = why_unknown(entry, body, water);
+  if (!reason.empty()) facts.line("motions").say("{}", reason);
 }
 
 }  // namespace buoyancy

@@ -10,14 +10,12 @@
 #include <string_view>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
-#include "base/format.h"
+#include "base/facts.h"
+#include "geometry/mesh_report_facts.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "scene/body_motions.h"
 #include "scene/coefficient_warnings.h"
 #include "scene/flotation_report.h"
-#include "scene/mesh_report_json.h"
 #include "scene/mesh_warnings.h"
 #include "scene/motion_report.h"
 #include "scene/subdivision_report.h"
@@ -26,7 +24,6 @@
 namespace buoyancy {
 namespace {
 
-using Json = nlohmann::ordered_json;
 
 std::vector<const Body*> users_of(const PreparedMesh& mesh, const Scene& scene) {
   std::vector<const Body*> users;
@@ -36,18 +33,6 @@ std::vector<const Body*> users_of(const PreparedMesh& mesh, const Scene& scene) 
   return users;
 }
 
-std::size_t index_of(const PreparedMesh& mesh, const Scene& scene) {
-  std::size_t index = 0;
-  while (scene.meshes()[index].get() != &mesh) ++index;
-  return index;
-}
-
-std::string bracketed(const Vec3& vector) {
-  std::string text = "[";
-  text += format_vector(vector);
-  return text + "]";
-}
-
 std::vector<std::string> outputs_of(const Body& body) {
   std::vector<std::string> outputs{"wrench"};
   if (body.hydrostatics) outputs.emplace_back("hydrostatics");
@@ -55,72 +40,80 @@ std::vector<std::string> outputs_of(const Body& body) {
   return outputs;
 }
 
-std::string body_text(const Body& body, const Scene& scene) {
-  std::string text = "body " + std::to_string(body.id) + "  " + body.name + "\n";
-  text += "  mesh          " + body.prepared_mesh->report.name + "\n";
-  text += "  method        " + std::string(to_string(body.solver.method())) + ", tolerance " +
-          format_number(body.solver.tolerance()) + "\n";
-  text += "  torque about  " + bracketed(body.reference_B) + " m\n";
-  text += "  outputs       ";
-  for (const std::string& output : outputs_of(body)) text += (text.back() == ' ' ? "" : ", ") + output;
-  text += "\n";
+Facts body_facts(const Body& body, const Scene& scene) {
   const std::optional<double> mass = known_mass(body, scene.water());
-  const std::optional<double> density = known_density(body, scene.water());
-  if (mass) {
-    const bool is_default = !body.dynamics.mass && !body.dynamics.density;
-    text += "  mass          " + format_number(*mass) + " kg" +
-            (density ? ", " + format_number(*density) + " kg/m^3" : "") +
-            (is_default ? " (default: half the water's density)" : "") + "\n";
-  } else {
-    text += "  mass          unknown: the mesh is open\n";
-  }
-  text += subdivision_text(body);
-  return text + coefficients_text(body);
+  const bool is_default = !body.dynamics.mass && !body.dynamics.density;
+  const std::vector<std::string> outputs = outputs_of(body);
+  Facts facts;
+  facts.heading("body {}  {}", body.id, body.name).add("id", body.id).add("name", body.name);
+  facts.line("mesh").say("{}", body.prepared_mesh->report.name);
+  facts.add("mesh", mesh_index(*body.prepared_mesh, scene));
+  facts.line("method").add("method", to_string(body.solver.method()), "{}");
+  facts.add("tolerance", body.solver.tolerance(), "tolerance {}");
+  facts.line("torque about").add("reference_point", body.reference_B, "[{}] m");
+  facts.line("outputs").add("outputs", outputs);
+  for (const std::string& output : outputs) facts.say("{}", output);
+  facts.line("mass").add("mass", mass, "{} kg");
+  facts.add("density", known_density(body, scene.water()), mass ? "{} kg/m^3" : "");
+  facts.say_if(!mass, "unknown: the mesh is open");
+  facts.say_if(mass && is_default, " (default: half the water's density)");
+  add_subdivision(body, scene, facts);
+  add_coefficients(body, facts);
+  return facts;
 }
 
-// "body 4, 6; tank 'ballast 1' of body 2"
-std::string users_text(const PreparedMesh& mesh, const Scene& scene) {
-  std::string text;
+// The report of a mesh, and which bodies and sections of bodies use it.
+Facts mesh_facts(const PreparedMesh& mesh, const Scene& scene) {
+  Facts report = mesh_report_facts(mesh.report);
+  Facts facts;
+  facts.heading("mesh {}", report.text()).line("used by");
+  facts.json() = std::move(report.json());
+  Json& bodies = facts.list("bodies");
   for (const Body* body : users_of(mesh, scene)) {
-    text += (text.empty() ? "body " : ", ") + std::to_string(body->id);
+    facts.say(bodies.empty() ? "body {}" : "{}", body->id);
+    bodies.push_back(body->id);
   }
+  bool is_first = bodies.empty();
   for (const SectionUser& user : section_users_of(mesh, scene)) {
-    if (!text.empty()) text += "; ";
-    text += to_text(user);
+    facts.say(std::exchange(is_first, false) ? "{} '{}' of body {}" : "; {} '{}' of body {}", user.section,
+              user.name, user.body_id);
+    facts.json()["sections"].push_back(to_json(user));
   }
-  return text;
+  return facts;
 }
 
 double shortest_wavelength(const Sea& sea) {
   return 2.0 * std::numbers::pi / sea.max_wave_number();
 }
 
-// Derived numbers are rounded; the JSON report has all digits.
-std::string format_rounded(double value) {
-  return format_number(value, 4);
-}
-
-std::string system_text(const WaveSystemReport& system) {
-  std::string text = system.type == "components" ? "" : std::string(system.type) + ", ";
-  text += pluralize(static_cast<std::int64_t>(system.components), "component", "components");
-  text += system.type == "regular" ? ", height " : ", Hs ";
-  text += format_rounded(system.height) + " m";
-  if (system.peak) {
-    text += system.type == "regular" ? ", period " : ", peak period ";
-    text += format_rounded(system.peak->period) + " s";
-    if (system.type == "components") text += " (calculated)";
-    if (system.zero_crossing_period) text += ", Tz " + format_rounded(*system.zero_crossing_period) + " s";
-    text += ", steepness " + format_rounded(system.peak->steepness);
-  }
-  if (system.breaking) {
-    const double share = system.breaking->height / system.breaking->limit;
-    text += " (" + std::to_string(std::lround(100.0 * share)) + " % of breaking)";
-  }
-  if (system.gamma) {
-    text += ", gamma " + format_rounded(*system.gamma);
-    if (system.gamma_is_default) text += " (from Hs and peak period)";
-  }
-  return text;
+// What repeats when is said by the caller.
+Facts system_facts(const WaveSystemReport& system, double repeat_time) {
+  const bool is_regular = system.type == "regular";
+  const bool is_components = system.type == "components";
+  const std::optional<PeakWave>& peak = system.peak;
+  const auto of_peak = [&peak](double PeakWave::*field) {
+    return peak ? std::optional((*peak).*field) : std::nullopt;
+  };
+  std::optional<double> share;
+  if (system.breaking) share = system.breaking->height / system.breaking->limit;
+  Facts facts;
+  facts.add("type", system.type, is_components ? "" : "{}");
+  facts.add("components", system.components);
+  facts.say(pluralize(static_cast<std::int64_t>(system.components), "component", "components"));
+  facts.add("height", system.height, is_regular ? "height {:4} m" : "Hs {:4} m");
+  facts.add("significant_wave_height", system.significant_wave_height);
+  facts.add("peak_period", of_peak(&PeakWave::period), is_regular ? "period {:4} s" : "peak period {:4} s");
+  facts.say_if(peak && is_components, " (calculated)");
+  if (system.zero_crossing_period) facts.say("Tz {:4} s", *system.zero_crossing_period);
+  facts.add("peak_wavelength", of_peak(&PeakWave::wavelength));
+  facts.add("steepness", of_peak(&PeakWave::steepness), "steepness {:4}");
+  facts.add("breaking_ratio", share);
+  if (share) facts.say(" ({} % of breaking)", std::int64_t{std::lround(100.0 * *share)});
+  facts.add("zero_crossing_period", system.zero_crossing_period);
+  facts.add("m0", system.m0).add("m1", system.m1).add("m2", system.m2).add("repeat_time", repeat_time);
+  facts.add("gamma", system.gamma, "gamma {:4}");
+  facts.add_flag("gamma_is_default", system.gamma_is_default, " (from Hs and peak period)");
+  return facts;
 }
 
 // [s], of each system.
@@ -134,179 +127,102 @@ std::vector<double> repeat_times(const Sea& sea, const std::vector<WaveSystemRep
   return times;
 }
 
-std::string repeats_text(double time) {
-  return std::isinf(time) ? "does not repeat within " + format_rounded(kRepeatSearch) + " mean periods"
-                          : "repeats after " + format_rounded(time) + " s";
-}
-
-std::string sea_text(const Sea& sea, const std::vector<WaveSystemReport>& systems) {
-  std::string text =
-      "sea  " + pluralize(static_cast<std::int64_t>(systems.size()), "wave system", "wave systems");
-  text += "\n";
-  const std::vector<double> repeats = repeat_times(sea, systems);
-  for (std::size_t i = 0; i < systems.size(); ++i) {
-    std::string label = "  system " + std::to_string(i + 1);
-    label.resize(std::max<std::size_t>(16, label.size() + 1), ' ');
-    text += label + system_text(systems[i]) + ", " + repeats_text(repeats[i]) + "\n";
+void say_repeats(double time, Facts& facts) {
+  if (std::isinf(time)) {
+    facts.say("does not repeat within {:4} mean periods", kRepeatSearch);
+  } else {
+    facts.say("repeats after {:4} s", time);
   }
-  text += "  together      " + system_text(report_components(sea)) + ", shortest wave " +
-          format_rounded(shortest_wavelength(sea)) + " m, " + repeats_text(std::ranges::max(repeats)) + "\n";
-  text += "  depth         " +
-          (std::isinf(sea.depth()) ? "inf: deep water" : format_number(sea.depth()) + " m") + "\n";
-  text += "  pressure      " + std::string(to_string(sea.pressure())) + "\n";
-  text += "  time          t = 0 at utime " + std::to_string(sea.time_origin()) + " us, " +
-          (sea.ramp() > 0.0 ? "ramp of " + format_number(sea.ramp()) + " s" : "no ramp") + "\n";
-  text += "  components    listed by --check --json\n";
-  return text;
 }
 
-Json to_json(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-template <typename T>
-Json to_json(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
-Json to_json(const Water& water) {
-  return {{"up", to_json(water.up_W)},
-          {"level", water.level},
-          {"density", water.density},
-          {"gravity", water.gravity}};
-}
-
-Json to_json(const WaveSystemReport& system, double repeat_time) {
-  const std::optional<PeakWave>& peak = system.peak;
-  const std::optional<Breaking>& breaking = system.breaking;
-  return {{"type", system.type},
-          {"components", system.components},
-          {"height", system.height},
-          {"significant_wave_height", system.significant_wave_height},
-          {"peak_period", peak ? Json(peak->period) : Json(nullptr)},
-          {"peak_wavelength", peak ? Json(peak->wavelength) : Json(nullptr)},
-          {"steepness", peak ? Json(peak->steepness) : Json(nullptr)},
-          {"breaking_ratio", breaking ? Json(breaking->height / breaking->limit) : Json(nullptr)},
-          {"zero_crossing_period", to_json(system.zero_crossing_period)},
-          {"m0", system.m0},
-          {"m1", system.m1},
-          {"m2", system.m2},
-          {"repeat_time", repeat_time},
-          {"gamma", to_json(system.gamma)},
-          {"gamma_is_default", system.gamma_is_default}};
-}
-
-Json to_json(const Sea& sea, const std::vector<WaveSystemReport>& reports) {
-  const std::vector<double> repeats = repeat_times(sea, reports);
-  Json systems = Json::array();
-  for (std::size_t i = 0; i < reports.size(); ++i) systems.push_back(to_json(reports[i], repeats[i]));
-  Json components = Json::array();
+Facts sea_facts(const Sea& sea, const std::vector<WaveSystemReport>& systems) {
+  Facts facts;
+  facts.heading("sea  ").say(
+      pluralize(static_cast<std::int64_t>(systems.size()), "wave system", "wave systems"));
+  const std::vector<double> repeats = repeat_times(sea, systems);
+  Json of_systems = Json::array();
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    Facts system = system_facts(systems[i], repeats[i]);
+    facts.line("system " + std::to_string(i + 1)).say("{}", system.text());
+    say_repeats(repeats[i], facts);
+    of_systems.push_back(std::move(system.json()));
+  }
+  const double all_repeat = std::ranges::max(repeats);
+  Facts together = system_facts(report_components(sea), all_repeat);
+  const double shortest = shortest_wavelength(sea);
+  facts.line("together").say("{}", together.text()).say("shortest wave {:4} m", shortest);
+  say_repeats(all_repeat, facts);
+  facts.line("depth").add("depth", sea.depth(), std::isinf(sea.depth()) ? "{}: deep water" : "{} m");
+  facts.line("pressure").add("wave_pressure", to_string(sea.pressure()), "{}");
+  facts.line("time").add("time_origin", sea.time_origin(), "t = 0 at utime {} us");
+  facts.add("ramp", sea.ramp(), sea.ramp() > 0.0 ? "ramp of {} s" : "");
+  facts.say_if(!(sea.ramp() > 0.0), "no ramp");
+  facts.line("components").say("listed by --check --json");
+  facts.add("significant_wave_height", sea.significant_wave_height());
+  facts.add("shortest_wavelength", shortest).add("extreme_steepness", sea.extreme_steepness());
+  facts.add("systems", std::move(of_systems)).add("together", std::move(together.json()));
+  Json& components = facts.list("components");
   for (const WaveComponent& component : sea.components()) {
     components.push_back({{"amplitude", component.amplitude},
                           {"angular_frequency", component.angular_frequency},
                           {"direction", component.direction},
                           {"phase", component.phase}});
   }
-  return {{"depth", sea.depth()},
-          {"wave_pressure", to_string(sea.pressure())},
-          {"time_origin", sea.time_origin()},
-          {"ramp", sea.ramp()},
-          {"significant_wave_height", sea.significant_wave_height()},
-          {"shortest_wavelength", shortest_wavelength(sea)},
-          {"extreme_steepness", sea.extreme_steepness()},
-          {"systems", std::move(systems)},
-          {"together", to_json(report_components(sea), std::ranges::max(repeats))},
-          {"components", std::move(components)}};
+  return facts;
 }
 
-Json to_json(const Body& body, const Scene& scene) {
-  Json json{{"id", body.id},
-            {"name", body.name},
-            {"mesh", index_of(*body.prepared_mesh, scene)},
-            {"method", to_string(body.solver.method())},
-            {"tolerance", body.solver.tolerance()},
-            {"reference_point", to_json(body.reference_B)},
-            {"outputs", outputs_of(body)},
-            {"mass", to_json(known_mass(body, scene.water()))},
-            {"density", to_json(known_density(body, scene.water()))}};
-  add_subdivision(body, scene, json);
-  if (body.hydrodynamics == nullptr) return json;
-  const HydrodynamicCoefficients& coefficients = body.hydrodynamics->coefficients();
-  if (coefficients.drag) json["drag"] = to_json(*coefficients.drag);
-  if (coefficients.added_mass) json["added_mass"] = to_json(*coefficients.added_mass);
-  return json;
+Facts water_facts(const Scene& scene) {
+  const Water& water = scene.water();
+  Facts facts;
+  facts.line("water").say("up . x < {} m", water.level).add("up", water.up_W, "up [{}]");
+  facts.add("level", water.level).add("density", water.density, "{} kg/m^3");
+  facts.add("gravity", water.gravity, "gravity {} m/s^2");
+  if (scene.current_W() != Vec3::Zero()) {
+    facts.line("current").add("current", scene.current_W(), "[{}] m/s");
+  }
+  return facts;
 }
 
-Json sea_json(const Scene& scene) {
-  if (scene.receives_sea()) return {{"received", true}};
-  return scene.sea() == nullptr ? Json(nullptr) : to_json(*scene.sea(), scene.wave_systems());
+void add_sea(const Scene& scene, Facts& facts) {
+  if (scene.receives_sea()) {
+    facts.heading("").heading("sea  received in messages").add("sea", Json{{"received", true}});
+  } else if (scene.sea() != nullptr) {
+    facts.heading("").include("sea", sea_facts(*scene.sea(), scene.wave_systems()));
+  } else {
+    facts.add("sea", nullptr);
+  }
+}
+
+Facts scene_facts(const Scene& scene, const SceneReportOptions& options) {
+  Facts facts;
+  facts.heading("{}", scene.name()).add("scene", scene.name()).include("water", water_facts(scene));
+  // In the text, the instructions come before the sea.
+  facts.line("instructions").say("{}", simd_target());
+  add_sea(scene, facts);
+  facts.add("simd_target", simd_target());
+  const std::vector<MotionsOfBody> motions =
+      options.motions ? scene_motions(scene) : std::vector<MotionsOfBody>{};
+  facts.list("bodies");
+  for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
+    const Body& body = scene.bodies()[i];
+    Facts one = body_facts(body, scene);
+    if (options.motions) add_motions(motions[i], body, scene.water(), one);
+    if (options.flotation != nullptr) add_flotation((*options.flotation)[i], body, scene.water(), one);
+    facts.heading("").include_in("bodies", std::move(one));
+  }
+  facts.list("meshes");
+  for (const auto& mesh : scene.meshes()) facts.heading("").include_in("meshes", mesh_facts(*mesh, scene));
+  return facts;
 }
 
 }  // namespace
 
 std::string scene_report_text(const Scene& scene, const SceneReportOptions& options) {
-  const Water& water = scene.water();
-  std::string text = scene.name() + "\n";
-  text += "  water         up . x < " + format_number(water.level) + " m, up " + bracketed(water.up_W) +
-          ", " + format_number(water.density) + " kg/m^3, gravity " + format_number(water.gravity) +
-          " m/s^2\n";
-  if (scene.current_W() != Vec3::Zero()) {
-    text += "  current       " + bracketed(scene.current_W()) + " m/s\n";
-  }
-  text += "  instructions  " + simd_target() + "\n";
-  if (scene.receives_sea()) text += "\nsea  received in messages\n";
-  if (scene.sea() != nullptr) {
-    text += '\n';
-    text += sea_text(*scene.sea(), scene.wave_systems());
-  }
-  const std::vector<MotionsOfBody> motions =
-      options.motions ? scene_motions(scene) : std::vector<MotionsOfBody>{};
-  for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
-    const Body& body = scene.bodies()[i];
-    text += '\n';
-    text += body_text(body, scene);
-    if (options.motions) text += motions_text(motions[i], body, scene.water());
-    if (options.flotation != nullptr) text += flotation_text((*options.flotation)[i], body);
-  }
-  for (const auto& mesh : scene.meshes()) {
-    text += "\nmesh " + to_text(mesh->report) + "\n  used by       " + users_text(*mesh, scene) + "\n";
-  }
-  return text;
+  return scene_facts(scene, options).text() + "\n";
 }
 
 std::string scene_report_json(const Scene& scene, const SceneReportOptions& options) {
-  Json bodies = Json::array();
-  const std::vector<MotionsOfBody> motions =
-      options.motions ? scene_motions(scene) : std::vector<MotionsOfBody>{};
-  for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
-    const Body& body = scene.bodies()[i];
-    bodies.push_back(to_json(body, scene));
-    if (!body.dynamics.given) continue;
-    if (options.motions) {
-      bodies.back()["motions"] = motions[i].motions ? to_json(*motions[i].motions) : Json(nullptr);
-    }
-    if (options.flotation != nullptr) {
-      const FlotationOfBody& entry = (*options.flotation)[i];
-      bodies.back()["flotation"] =
-          entry.flotation ? to_json(*entry.flotation, body, scene.water()) : Json(nullptr);
-    }
-  }
-  Json meshes = Json::array();
-  for (const auto& mesh : scene.meshes()) {
-    Json report = mesh_report_json(mesh->report);
-    report["bodies"] = Json::array();
-    for (const Body* body : users_of(*mesh, scene)) report["bodies"].push_back(body->id);
-    for (const SectionUser& user : section_users_of(*mesh, scene))
-      report["sections"].push_back(to_json(user));
-    meshes.push_back(std::move(report));
-  }
-  Json water = to_json(scene.water());
-  if (scene.current_W() != Vec3::Zero()) water["current"] = to_json(scene.current_W());
-  const Json report{{"scene", scene.name()},       {"water", std::move(water)},
-                    {"sea", sea_json(scene)},      {"simd_target", simd_target()},
-                    {"bodies", std::move(bodies)}, {"meshes", std::move(meshes)}};
-  // dump() writes non-finite numbers as null, and file names that are not UTF-8 with replacement characters.
-  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_lines(scene_facts(scene, options).json());
 }
 
 std::string refused_meshes_text(const std::vector<RefusedMesh>& meshes) {
@@ -320,11 +236,11 @@ std::string refused_meshes_text(const std::vector<RefusedMesh>& meshes) {
 std::string refused_meshes_json(const std::vector<RefusedMesh>& meshes) {
   Json refused = Json::array();
   for (const RefusedMesh& mesh : meshes) {
-    Json one = mesh.report.name.empty() ? Json::object() : mesh_report_json(mesh.report);
+    Json one = mesh.report.name.empty() ? Json::object() : mesh_report_facts(mesh.report).json();
     one["error"] = mesh.error.message();
     refused.push_back(std::move(one));
   }
-  return Json{{"refused", std::move(refused)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_lines({{"refused", std::move(refused)}});
 }
 
 std::vector<Warning> scene_warnings(const Scene& scene) {

@@ -58,7 +58,7 @@ std::string scene_report_text(const Scene& scene, const SceneReportOptions& opti
 std::string scene_report_json(const Scene& scene, const SceneReportOptions& options = {});
 
 // The reports of meshes that are refused, as lines and as one JSON object, with a final newline: "refused",
-// an array of mesh_report_json() with "error", a text. Of a file that could not be read, only "error".
+// an array of the fields of MeshReport with "error", a text. Of a file that could not be read, only "error".
 std::string refused_meshes_text(const std::vector<RefusedMesh>& meshes);
 std::string refused_meshes_json(const std::vector<RefusedMesh>& meshes);
 

@@ -1,21 +1,20 @@
 // The part of the report of `buoyancyd --check` about parts, compartments and tanks: see scene_report.h.
 #pragma once
 
-#include <string>
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "base/facts.h"
 #include "scene/scene.h"
 
 namespace buoyancy {
 
-// Lines of a body's section; empty for a body without any.
-std::string subdivision_text(const Body& body);
-// Adds "parts", "compartments" and "tanks" to the object of a body that has them; "mesh" is an index into the
-// scene's meshes.
-void add_subdivision(const Body& body, const Scene& scene, nlohmann::ordered_json& json);
+// Among the scene's meshes.
+std::size_t mesh_index(const PreparedMesh& mesh, const Scene& scene);
+
+// Adds "parts", "compartments" and "tanks" to a body that has them, with a line for each; "mesh" is an index
+// into the scene's meshes.
+void add_subdivision(const Body& body, const Scene& scene, Facts& facts);
 
 // A part, compartment or tank whose mesh is the one asked for.
 struct SectionUser {
@@ -27,7 +26,6 @@ struct SectionUser {
 
 // In the order of the bodies.
 std::vector<SectionUser> section_users_of(const PreparedMesh& mesh, const Scene& scene);
-std::string to_text(const SectionUser& user);  // "tank 'ballast 1' of body 2"
-nlohmann::ordered_json to_json(const SectionUser& user);
+Json to_json(const SectionUser& user);
 
 }  // namespace buoyancy

@@ -19,10 +19,7 @@ bool is_printable(char c) {
 }
 
 std::string quoted(std::string_view word) {
-  std::string text(1, '\'');
-  text += word;
-  text += '\'';
-  return text;
+  return format_text("'{}'", word);
 }
 
 // Formats a value as TOML.

@@ -24,18 +24,12 @@ std::string direction_text(const Vec3& direction) {
   for (std::size_t i = 0; i < kAxes.size(); ++i) {
     if (direction.isApprox(axis(i), 1e-9)) return std::string(kAxes[i]);
   }
-  std::string text = "[";
-  text += format_vector(direction, 4);
-  return text += "]";
+  return format_text("[{:4}]", direction);
 }
 
 std::string quaternion_text(const Eigen::Quaterniond& q) {
-  std::string text = "[";
-  for (const double value : {q.w(), q.x(), q.y(), q.z()}) {
-    if (text.size() > 1) text += ", ";
-    text += format_number(std::abs(value) < 1e-12 ? 0.0 : value, 12);
-  }
-  return text += "]";
+  const auto plain = [](double value) { return std::abs(value) < 1e-12 ? 0.0 : value; };
+  return format_text("[{:12}, {:12}, {:12}, {:12}]", plain(q.w()), plain(q.x()), plain(q.y()), plain(q.z()));
 }
 
 // What to pass to a program. report: of a mesh whose file states its up axis.

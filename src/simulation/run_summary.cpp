@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 namespace buoyancy {
 namespace {
@@ -75,7 +75,7 @@ std::string to_text(const RunSummary& summary) {
 }
 
 std::string to_json(const RunSummary& summary) {
-  nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
+  Json bodies = Json::array();
   for (const BodySummary& body : summary.bodies) {
     bodies.push_back({{"id", body.id},
                       {"name", body.name},
@@ -87,34 +87,33 @@ std::string to_json(const RunSummary& summary) {
                       {"energy_drift", body.energy_drift},
                       {"energy_range", body.energy_range}});
   }
-  nlohmann::ordered_json warnings = nlohmann::ordered_json::array();
+  Json warnings = Json::array();
   for (const Warning& warning : summary.warnings) warnings.push_back(warning.message());
   const LatencyPercentiles round_trip = summary.client.round_trip.percentiles();
-  const nlohmann::ordered_json json = {{"integrator", to_string(summary.options.integrator)},
-                                       {"step", summary.options.step},
-                                       {"lead_time", summary.options.lead_time},
-                                       {"delay_steps", summary.options.delay_steps},
-                                       {"session_id", summary.options.session_id},
-                                       {"steps", summary.steps},
-                                       {"steps_requested", summary.steps_requested},
-                                       {"interrupted", summary.interrupted},
-                                       {"time", summary.time},
-                                       {"wall_time", summary.wall_time},
-                                       {"bodies", bodies},
-                                       {"round_trip",
-                                        {{"p50", round_trip.p50},
-                                         {"p99", round_trip.p99},
-                                         {"p999", round_trip.p999},
-                                         {"max", round_trip.max}}},
-                                       {"requests", summary.client.requests},
-                                       {"retries", summary.client.retries},
-                                       {"unanswered", summary.client.unanswered},
-                                       {"late", summary.client.late},
-                                       {"max_lag", summary.client.max_lag},
-                                       {"malformed", summary.client.malformed},
-                                       {"warnings", warnings}};
-  // dump() must not throw for a body name that is not valid UTF-8.
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  const Json json = {{"integrator", to_string(summary.options.integrator)},
+                     {"step", summary.options.step},
+                     {"lead_time", summary.options.lead_time},
+                     {"delay_steps", summary.options.delay_steps},
+                     {"session_id", summary.options.session_id},
+                     {"steps", summary.steps},
+                     {"steps_requested", summary.steps_requested},
+                     {"interrupted", summary.interrupted},
+                     {"time", summary.time},
+                     {"wall_time", summary.wall_time},
+                     {"bodies", bodies},
+                     {"round_trip",
+                      {{"p50", round_trip.p50},
+                       {"p99", round_trip.p99},
+                       {"p999", round_trip.p999},
+                       {"max", round_trip.max}}},
+                     {"requests", summary.client.requests},
+                     {"retries", summary.client.retries},
+                     {"unanswered", summary.client.unanswered},
+                     {"late", summary.client.late},
+                     {"max_lag", summary.client.max_lag},
+                     {"malformed", summary.client.malformed},
+                     {"warnings", warnings}};
+  return json_lines(json);
 }
 
 }  // namespace buoyancy

@@ -15,14 +15,10 @@ constexpr double kMaxEnergyRise = 0.5;
 // Rise, as a fraction of m g L, that counts as rounding error.
 constexpr double kEnergyNoise = 1e-9;
 
-std::string number(double value, int digits = 3) {
-  return format_number(value, digits);
-}
-
 // Rounds down to two significant digits, so that the recommended value is not too large.
 std::string rounded_down(double value) {
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-  return number(std::floor(value / unit) * unit, 2);
+  return format_number(std::floor(value / unit) * unit, 2);
 }
 
 struct Worst {
@@ -65,8 +61,8 @@ std::optional<double> depth_below_bed(const SimulatedBody& body, double bed, con
 }
 
 std::string describe_frequency(const Worst& worst) {
-  return "a body of " + number(worst.body->rigid.mass) + " kg has natural frequencies up to " +
-         number(worst.highest.frequency) + " rad/s, at a draft of " + number(worst.highest.draft) + " m";
+  return format_text("a body of {:3} kg has natural frequencies up to {:3} rad/s, at a draft of {:3} m",
+                     worst.body->rigid.mass, worst.highest.frequency, worst.highest.draft);
 }
 
 }  // namespace
@@ -87,13 +83,13 @@ std::optional<Warning> step_warning(const Simulation& simulation) {
   const double value = effective_step * frequency;
   Warning warning;
   warning.subject = subject(*worst.body, worst.others);
-  warning.actual = "step x frequency = " + number(effective_step) + " s x " + number(frequency) +
-                   " rad/s = " + number(value);
+  warning.actual =
+      format_text("step x frequency = {:3} s x {:3} rad/s = {:3}", effective_step, frequency, value);
   if (lead > 0.0)
-    warning.actual += " (effective step: the lead time worsens the step of " + number(step) + " s)";
+    warning.actual += format_text(" (effective step: the lead time worsens the step of {:3} s)", step);
   warning.actual += value < kStabilityLimit ? ", stable but inaccurate" : ", unstable";
-  warning.expected = "at most " + number(kAccuracyLimit) + "; from " + number(kStabilityLimit) +
-                     " on the simulation is unstable";
+  warning.expected =
+      format_text("at most {:3}; from {:3} on the simulation is unstable", kAccuracyLimit, kStabilityLimit);
   warning.cause = describe_frequency(worst);
   warning.hint = "Use --step " + rounded_down(good_step) + " or less";
   return warning;
@@ -107,10 +103,10 @@ std::optional<Warning> latency_warning(const Simulation& simulation, double dela
   const double frequency = worst.highest.frequency;
   Warning warning;
   warning.subject = subject(*worst.body, worst.others);
-  warning.actual = "response delay x frequency = " + number(delay) + " s x " + number(frequency) +
-                   " rad/s = " + number(delay * frequency);
-  warning.expected = "at most " + number(kLatencyLimit) + ", with --lead-time set to the delay (now " +
-                     number(simulation.options().lead_time) + " s)";
+  warning.actual = format_text("response delay x frequency = {:3} s x {:3} rad/s = {:3}", delay, frequency,
+                               delay * frequency);
+  warning.expected = format_text("at most {:3}, with --lead-time set to the delay (now {:3} s)",
+                                 kLatencyLimit, simulation.options().lead_time);
   warning.cause =
       "wrenches this late add energy to the body even with a lead time: " + describe_frequency(worst);
   warning.hint = "Reduce the response delay to " + rounded_down(kLatencyLimit / frequency) +
@@ -142,9 +138,9 @@ std::vector<Warning> BedMonitor::update(const Simulation& simulation) {
     warned_[i] = true;
     warnings.push_back(
         {subject(bodies[i], 0),
-         "it is below the sea bed at " + number(simulation.time()) + " s: its lowest point is " +
-             number(*depth, 4) + " m under the level",
-         "at most the depth of " + number(simulation.depth(), 4) + " m",
+         format_text("it is below the sea bed at {:3} s: its lowest point is {:4} m under the level",
+                     simulation.time(), *depth),
+         format_text("at most the depth of {:4} m", simulation.depth()),
          "the bed does not stop bodies: there is no contact",
          "Below the bed, the waves have the pressure that they have at the bed; do not use the "
          "motion from then on, or give the water its depth there"});
@@ -190,8 +186,8 @@ std::optional<Warning> energy_warning(const Simulation& simulation) {
   const EnergyStats& energy = worst->energy;
   Warning warning;
   warning.subject = subject(*worst, bodies - 1);
-  warning.actual = "mechanical energy rose by " + number(energy.max - energy.initial) +
-                   " J; the largest kinetic energy is " + number(energy.max_kinetic) + " J";
+  warning.actual = format_text("mechanical energy rose by {:3} J; the largest kinetic energy is {:3} J",
+                               energy.max - energy.initial, energy.max_kinetic);
   warning.expected = "no rise beyond the integrator's error: nothing in the scene adds energy";
   warning.cause =
       "a step too large for the body, late responses without a --lead-time, or an approximate method";

@@ -260,10 +260,11 @@ Expected<void> Simulation::check_motion() const {
     if (!(rise > kEnergyLimit * body.energy.available)) continue;
     return make_error(
         {body_at(body, time()),
-         "its mechanical energy rose by " + format_number(rise, 3) + " J, to a speed of " +
-             format_number(state.velocity_W.norm(), 3) + " m/s",
-         "a rise of at most " + format_number(kEnergyLimit * body.energy.available, 3) +
-             " J: ten times what gravity, waves and current can give to it here",
+         format_text("its mechanical energy rose by {:3} J, to a speed of {:3} m/s", rise,
+                     state.velocity_W.norm()),
+         format_text(
+             "a rise of at most {:3} J: ten times what gravity, waves and current can give to it here",
+             kEnergyLimit * body.energy.available),
          std::string(kDiverged) + ", responses are late, or the waves are too steep for linear theory",
          std::string(kUseSmallerStep) + " or lock-step mode, and see buoyancyd --check"});
   }

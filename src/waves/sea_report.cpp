@@ -114,17 +114,12 @@ WaveSystemReport with_wavelength(WaveSystemReport report, const Sea& sea) {
   return report;
 }
 
-// Derived numbers are rounded.
-std::string rounded(double value) {
-  return format_number(value, 4);
-}
-
 std::optional<Warning> breaking_warning(const std::string& subject, const WaveSystemReport& report) {
   if (!report.breaking || report.breaking->height < report.breaking->limit) return std::nullopt;
   return Warning{
-      subject, "a wave height of " + rounded(report.breaking->height) + " m",
-      "less than " + rounded(report.breaking->limit) +
-          " m, at which such waves break: " + std::string(report.breaking->criterion),
+      subject, format_text("a wave height of {:4} m", report.breaking->height),
+      format_text("less than {:4} m, at which such waves break: {}", report.breaking->limit,
+                  report.breaking->criterion),
       "a height that does not belong to the period or to the depth, or one in feet",
       "Use lower or longer waves, or deeper water: breaking is not modelled, and linear waves of this "
       "height are like none in nature"};
@@ -191,8 +186,8 @@ std::vector<Warning> sea_warnings(const std::string& subject, const Sea& sea,
   if (sea.is_too_steep()) {
     warnings.push_back(
         {subject + ": the sea",
-         "a steepness of " + rounded(sea.extreme_steepness()) +
-             " (4 sqrt(sum (a k)^2 / 2), or sum a k where that is less)",
+         format_text("a steepness of {:4} (4 sqrt(sum (a k)^2 / 2), or sum a k where that is less)",
+                     sea.extreme_steepness()),
          "less than 1: under the steepest crests the modelled pressure falls downwards, since linear theory "
          "does not hold there",
          "waves too high for their length, or the short waves of a spectrum with a high cutoff",

@@ -35,11 +35,11 @@ const char* meaning(BodyStatus status) {
 
 }  // namespace
 
-nlohmann::ordered_json body_statuses() {
-  nlohmann::ordered_json statuses = nlohmann::ordered_json::array();
+Json body_statuses() {
+  Json statuses = Json::array();
   for (int i = 0; i < kBodyStatusCount; ++i) {
     const auto status = static_cast<BodyStatus>(i);
-    statuses.push_back(nlohmann::ordered_json::array({to_string(status), meaning(status)}));
+    statuses.push_back(Json::array({to_string(status), meaning(status)}));
   }
   return statuses;
 }

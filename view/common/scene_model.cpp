@@ -18,8 +18,6 @@
 namespace buoyancy::view {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // The meshes that are drawn, by their index in the scene: all but those of parts alone.
 std::vector<std::size_t> drawn_meshes(const Scene& scene) {
   std::unordered_set<const PreparedMesh*> drawn;
@@ -59,17 +57,13 @@ std::string file_name(const Json& path) {
   return std::filesystem::path(path.get<std::string>()).filename().string();
 }
 
-Json json_array(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
-
 // Without such bodies nothing is added, so that the page of a run stays as small as it is.
 void add_loads(const Scene& scene, Json& model) {
   if (std::ranges::none_of(scene.bodies(), has_loads)) return;
   const HorizontalAxes axes = horizontal_axes(scene.water().up_W);
-  model["loads"] = {{"e1", json_array(axes.e1_W)},
-                    {"e2", json_array(axes.e2_W)},
-                    {"current", json_array(scene.current_W())},
+  model["loads"] = {{"e1", axes.e1_W},
+                    {"e2", axes.e2_W},
+                    {"current", scene.current_W()},
                     {"waves", scene.sea() != nullptr || scene.receives_sea()}};
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
     const Body& body = scene.bodies()[i];
@@ -78,7 +72,7 @@ void add_loads(const Scene& scene, Json& model) {
     const HydrodynamicCoefficients& coefficients =
         body.hydrodynamics != nullptr ? body.hydrodynamics->coefficients() : none;
     model["bodies"][i]["loads"] = {
-        {"drag_center", coefficients.drag ? json_array(coefficients.drag->center_B) : Json(nullptr)},
+        {"drag_center", coefficients.drag ? std::optional(coefficients.drag->center_B) : std::nullopt},
         {"added_mass", coefficients.added_mass.has_value()},
         {"published", body.loads}};
   }
@@ -119,8 +113,7 @@ Json scene_model(const Scene& scene, const SceneModelOptions& options) {
     model.erase("sea");
   }
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
-    const auto& center = scene.bodies()[i].center_of_mass_B;
-    model["bodies"][i]["center_of_mass"] = center ? json_array(*center) : Json(nullptr);
+    model["bodies"][i]["center_of_mass"] = scene.bodies()[i].center_of_mass_B;
   }
   add_loads(scene, model);
   const std::vector<std::size_t> drawn = drawn_meshes(scene);
@@ -135,7 +128,7 @@ Json scene_model(const Scene& scene, const SceneModelOptions& options) {
     Json& description = meshes.emplace_back(std::move(model["meshes"][i]));
     description["name"] = file_name(description["name"]);
     description.erase("sections");
-    description["center"] = json_array(mesh.center_B);
+    description["center"] = mesh.center_B;
     description["shown_triangles"] = drawing.triangle_count();
     description["positions"] = base64_of<float>(drawing.positions);
     description["indices"] = base64_of<std::uint32_t>(drawing.indices);

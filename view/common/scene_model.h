@@ -3,8 +3,7 @@
 
 #include <cstddef>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.h"
 #include "scene/scene.h"
 #include "view/page/mesh_drawing.h"
 
@@ -38,6 +37,6 @@ struct SceneModelOptions {
 //
 // positions and indices are base64 of little-endian numbers. A mesh with more triangles than its share of
 // max_triangles is reduced for drawing only (meshoptimizer).
-nlohmann::ordered_json scene_model(const Scene& scene, const SceneModelOptions& options = {});
+Json scene_model(const Scene& scene, const SceneModelOptions& options = {});
 
 }  // namespace buoyancy::view

@@ -2,26 +2,14 @@
 
 #include <cmath>
 
-#include "base/vec3.h"
-
 namespace buoyancy::view {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json json_array(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
-
-}  // namespace
-
 Json sea_json(const Sea& sea) {
   const PreparedComponents& components = sea.prepared();
-  return {{"e1", json_array(sea.axes().e1_W)},
-          {"e2", json_array(sea.axes().e2_W)},
-          {"up", json_array(sea.water().up_W)},
+  return {{"e1", sea.axes().e1_W},
+          {"e2", sea.axes().e2_W},
+          {"up", sea.water().up_W},
           {"level", sea.water().level},
-          {"depth", std::isinf(sea.depth()) ? Json(nullptr) : Json(sea.depth())},
+          {"depth", std::isinf(sea.depth()) ? std::nullopt : std::optional(sea.depth())},
           {"time_origin", sea.time_origin()},
           {"ramp", sea.ramp()},
           {"pressure", to_string(sea.pressure())},

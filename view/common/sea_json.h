@@ -3,8 +3,7 @@
 
 #include <cstdint>
 
-#include <nlohmann/json.hpp>
-
+#include "base/json.h"
 #include "engine/sea_timeline.h"
 #include "waves/sea.h"
 
@@ -18,9 +17,9 @@ namespace buoyancy::view {
 // "amplitude" [m], "apparent_frequency" [rad/s], "wave_number", "k1", "k2" [rad/m] and "phase" [rad]: arrays
 //                    of one number per component, as in PreparedComponents
 // Numbers have the digits from which the same double is read back.
-nlohmann::ordered_json sea_json(const Sea& sea);
+Json sea_json(const Sea& sea);
 // A calm sea has no components.
-nlohmann::ordered_json sea_json(const SeaPeriod& period);
+Json sea_json(const SeaPeriod& period);
 
 // The time t of the sea [s] at utime [us]. Pages get t, since JavaScript's numbers do not hold every utime.
 double sea_time(const Sea& sea, std::int64_t utime, double lead_time);

@@ -3,8 +3,6 @@
 #include <initializer_list>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "view/common/body_statuses.h"
 #include "view/common/scene_model.h"
 #include "view/page/page_assets.h"
@@ -14,9 +12,8 @@ namespace {
 
 // "version", "body_statuses": see body_statuses(), "model": see scene_model().
 std::string model_json(const Scene& scene, const std::string& version) {
-  const nlohmann::ordered_json data{
-      {"version", version}, {"body_statuses", body_statuses()}, {"model", scene_model(scene)}};
-  return data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json_line(
+      Json{{"version", version}, {"body_statuses", body_statuses()}, {"model", scene_model(scene)}});
 }
 
 // One file: a browser opens a connection for each, and gives up those that a busy machine serves late.

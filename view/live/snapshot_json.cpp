@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "view/common/sea_json.h"
 
 namespace buoyancy::view {
@@ -205,11 +203,6 @@ json counts_json(const BusMonitor& monitor) {
           {"seas_rejected", counts.seas_rejected}};
 }
 
-// Replaces invalid UTF-8, which a scene's name may contain, instead of throwing.
-std::string dump(const json& value) {
-  return value.dump(-1, ' ', false, json::error_handler_t::replace);
-}
-
 }  // namespace
 
 std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double time, double listening,
@@ -244,7 +237,7 @@ std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double
       rest["status"]["conditions_rejected"] = monitor.status()->counters.conditions_rejected;
     }
   }
-  std::string text = dump(rest);
+  std::string text = json_line(rest);
   text.back() = ',';  // replaces the closing brace
   text += R"("bodies":[)";
   bool first = true;
@@ -260,7 +253,7 @@ std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double
 std::string history_json(const BusMonitor& monitor) {
   json seconds = json::array();
   for (const SecondStats& second : monitor.seconds()) seconds.push_back(second_json(second));
-  return dump(seconds);
+  return json_line(seconds);
 }
 
 }  // namespace buoyancy::view

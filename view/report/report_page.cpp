@@ -6,8 +6,6 @@
 #include <memory>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "engine/body_evaluation.h"
 #include "engine/subdivision_load.h"
 #include "hydrostatics/hydrostatics.h"
@@ -19,8 +17,6 @@
 
 namespace buoyancy::view {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMaxTimedQueries = 200;
 
@@ -200,7 +196,7 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
     }
     data["bodies"].push_back(std::move(described));
   }
-  return data.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_line(data);
 }
 
 std::string report_page(const std::string& data, std::string_view three, const PageParts& parts) {
