@@ -24,7 +24,6 @@
 namespace buoyancy {
 namespace {
 
-
 std::vector<const Body*> users_of(const PreparedMesh& mesh, const Scene& scene) {
   std::vector<const Body*> users;
   for (const Body& body : scene.bodies()) {
