@@ -182,6 +182,12 @@ class GroupsLinksIntoBodies(ImportTestCase):
         self.assertIn("'tether' (model.sdf:1), 4 kg: has no volume", result.output)
         self.assertIn("left out have 7 kg", result.output)
 
+    def test_specks_have_no_volume(self):
+        speck = link("depth", box("speck", "1e-6 1e-6 1e-6") + inertial(0.01))
+        result = self.import_model(sdf(link() + speck + fixed("base", "depth", "revolute")))
+        self.assertEqual(len(result.bodies), 1)
+        self.assertIn("'depth' (model.sdf:1), 0.01 kg: has no volume", result.output)
+
     def test_options_choose_links(self):
         self.assert_refused(self.MODEL, "'rudder'", options=("--drop", "rudder"))
         result = self.import_model(self.MODEL, "--keep", "propeller", "--drop", "fin", "--drop", "mast")

@@ -7,11 +7,13 @@ import re
 from dataclasses import dataclass
 
 from .failure import fail
+from .geometry import solid_of
 
 _PROPELLER = re.compile(r"prop(?!erty)|thruster|rotor(?!y)|screw|impeller", re.IGNORECASE)
 _SENSOR = re.compile(
     r"sensor|camera|(^|_)imu|(^|_)gps|dvl|lidar|laser|sonar|altimeter|magnetometer|antenna|hydrophone", re.IGNORECASE
 )
+_MIN_VOLUME = 1e-9  # m^3: what is smaller stands for a link whose shape does not matter
 _THRUSTER_PLUGIN = re.compile(r"thrust", re.IGNORECASE)
 
 
@@ -104,4 +106,10 @@ def _without_accessories(model, groups, options, report):
 
 def geometry_of(group, options):
     """The geometry that displaces water, with its link."""
-    return [(link, geometry) for link in group.links for geometry in link.geometry if geometry.visual == options.visual]
+    return [
+        (link, geometry)
+        for link in group.links
+        for geometry in link.geometry
+        if geometry.visual == options.visual
+        and (geometry.kind == "mesh" or solid_of(geometry).volume > _MIN_VOLUME)
+    ]

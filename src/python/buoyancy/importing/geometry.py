@@ -1,7 +1,7 @@
 """Volumes, centroids and inertias of shapes and meshes, and meshes of the shapes that a scene file lacks.
 
 A capsule and an ellipsoid become OBJ files beside the scene, as polyhedra inscribed in them: SIDES meridians, and BANDS
-bands of latitude (of each cap of a capsule). What they lack in volume is in the report.
+bands of latitude, half of them on each cap of a capsule. What they lack in volume is in the report.
 """
 import itertools
 import math
@@ -98,7 +98,7 @@ def _mesh_of_shape(geometry):
     radius, length = size
     rings = []
     for sign in (1, -1):
-        cap = [math.pi / 2 * i / BANDS for i in range(BANDS + 1)]
+        cap = [math.pi * i / BANDS for i in range(BANDS // 2 + 1)]
         ring = [(radius * math.sin(a),) * 2 + (sign * (length / 2 + radius * math.cos(a)),) for a in cap]
         rings += ring if sign > 0 else ring[::-1]
     return _surface_of_revolution(rings)
