@@ -95,7 +95,7 @@ def _without_accessories(model, groups, options, report):
         fail(
             model.source,
             f"no body has a volume in its {kinds[0]} geometry",
-            "boxes, cylinders, meshes ...",
+            "boxes, cylinders or meshes",
             "a model for another purpose",
             f"Import the {kinds[1]} geometry " + ("without --visual" if options.visual else "with --visual")
             if other
