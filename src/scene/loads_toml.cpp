@@ -39,7 +39,7 @@ void refuse_sname_keys(const toml::table& toml, TomlTable& table, std::string ex
     table.fail_at(
         key.str(), std::move(expected),
         "the name and the sign convention of another program (gz-sim, VRX, Fossen's SNAME notation)",
-        std::string(kNegativeSignHint) + ". docs/loads.md maps their keys to these");
+        std::string(kNegativeSignHint) + ". docs/importing.md maps their keys to these");
     return;
   }
 }

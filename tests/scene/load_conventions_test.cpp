@@ -1,4 +1,4 @@
-// The examples of docs/loads.md, "From another simulator": at random motions, the coefficients of another
+// The examples of docs/importing.md, "From another simulator": at random motions, the coefficients of another
 // simulator give the same wrench in its own convention as the converted ones in ours. Both are read from the
 // page, so that no number of it can be wrong unnoticed.
 #include <array>
@@ -24,7 +24,7 @@ constexpr int kMotions = 200;
 
 // The first block of code in this language after the heading.
 std::string block_after(const std::string& heading, const std::string& language) {
-  const std::string page = read_file(source_dir() / "docs/loads.md");
+  const std::string page = read_file(source_dir() / "docs/importing.md");
   const std::size_t section = page.find("\n### " + heading + "\n");
   const std::string fence = "```" + language + "\n";
   const std::size_t begin = page.find(fence, section);

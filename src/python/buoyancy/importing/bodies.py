@@ -1,0 +1,115 @@
+"""Which links become a body, and which are left out.
+
+Links that fixed joints connect are one body, whose frame is that of the root link: the one that is no child of such a
+joint. A body on a moving joint is left out if it has no volume, or is a propeller or a sensor, unless --keep names it.
+"""
+import re
+from dataclasses import dataclass
+
+from .failure import fail
+from .geometry import solid_of
+
+_PROPELLER = re.compile(r"prop(?!erty)|thruster|rotor(?!y)|screw|impeller", re.IGNORECASE)
+_SENSOR = re.compile(
+    r"sensor|camera|(^|_)imu|(^|_)gps|dvl|lidar|laser|sonar|altimeter|magnetometer|antenna|hydrophone", re.IGNORECASE
+)
+_MIN_VOLUME = 1e-9  # m^3: what is smaller stands for a link whose shape does not matter
+_THRUSTER_PLUGIN = re.compile(r"thrust", re.IGNORECASE)
+
+
+@dataclass
+class Group:
+    root: object  # the link whose frame the body has
+    links: list
+
+
+def group_links(model, options, report):
+    """The bodies of a model, in the order of their links."""
+    for name in [*options.drop, *options.keep]:
+        if name not in model.links:
+            fail(model.source, f"no link is named '{name}'", f"one of: {', '.join(model.links)}",
+                 "a misspelt name of --drop or --keep", "Correct the option")
+    kept = {name: link for name, link in model.links.items() if name not in options.drop}
+    for name in options.drop:
+        report.leave_out(f"link '{name}': --drop")
+    leader = {name: name for name in kept}
+
+    def find(name):
+        while leader[name] != name:
+            name = leader[name]
+        return name
+
+    children = set()
+    for joint in model.joints:
+        if "world" in (joint.parent, joint.child) and joint.fixed:
+            report.note(f"joint '{joint.name}' fixes the model to the world: it is free in the scene")
+        if options.links or not joint.fixed or joint.parent not in kept or joint.child not in kept:
+            continue
+        leader[find(joint.child)] = find(joint.parent)
+        children.add(joint.child)
+    groups = {}
+    for name in kept:
+        groups.setdefault(find(name), []).append(name)
+    result = []
+    for names in groups.values():
+        roots = [name for name in names if name not in children] or names
+        root = model.canonical if model.canonical in roots else roots[0]
+        result.append(Group(kept[root], [kept[name] for name in names]))
+    return _without_accessories(model, result, options, report)
+
+
+def _without_accessories(model, groups, options, report):
+    moving = {joint.child: joint.name for joint in model.joints if not joint.fixed}
+    driven = set()
+    for plugin in model.plugins:
+        if _THRUSTER_PLUGIN.search(plugin.name + plugin.filename):
+            for key in ("joint_name", "jointName", "link_name", "linkName"):
+                driven.add(plugin.prefix + plugin.element.child_text(key, ""))
+    main = next((group for group in groups if any(link.name == model.canonical for link in group.links)), None)
+    result, lost = [], 0.0
+    for group in groups:
+        names = [link.name for link in group.links]
+        reason = ""
+        if not geometry_of(group, options):
+            reason = "has no volume"
+        elif group is main or any(name in options.keep for name in names):
+            reason = ""
+        elif any(name in driven or moving.get(name) in driven for name in names) or _PROPELLER.search(group.root.name):
+            reason = "is a propeller"
+        elif any(link.has_sensor for link in group.links) or _SENSOR.search(group.root.name):
+            reason = "is a sensor"
+        if not reason:
+            result.append(group)
+            continue
+        mass = sum(link.inertial.mass for link in group.links if link.inertial)
+        lost += mass
+        report.leave_out(
+            f"link{'s' if len(names) > 1 else ''} {', '.join(map(repr, names))} ({group.root.source}), "
+            f"{mass:.6g} kg: {reason}" + ("" if reason == "has no volume" else "; --keep keeps it")
+        )
+    if lost > 0:
+        report.warn(f"the links that are left out have {lost:.6g} kg, which no body of the scene has")
+    if not result:
+        kinds = ("visual", "collision") if options.visual else ("collision", "visual")
+        other = any(g.visual != options.visual for group in groups for link in group.links for g in link.geometry)
+        fail(
+            model.source,
+            f"no body has a volume in its {kinds[0]} geometry",
+            "boxes, cylinders or meshes",
+            "a model for another purpose",
+            f"Import the {kinds[1]} geometry " + ("without --visual" if options.visual else "with --visual")
+            if other
+            else "Add geometry to its links",
+        )
+    return result
+
+
+def geometry_of(group, options):
+    """The geometry that displaces water, with its link."""
+    return [
+        (link, geometry)
+        for link in group.links
+        for geometry in link.geometry
+        if geometry.visual == options.visual
+        and (geometry.kind == "mesh" or solid_of(geometry).volume > _MIN_VOLUME)
+    ]

@@ -1,0 +1,53 @@
+"""Finds the files that a model names: model://, package://, file:// and relative names."""
+import os
+import urllib.parse
+from pathlib import Path
+
+from .failure import fail
+
+_VARIABLES = ("GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH", "ROS_PACKAGE_PATH")
+_MAX_PARENTS = 8
+
+
+class FileSearch:
+    """Searches the model's folder, its parents, --path, and the folders of the variables of Gazebo and ROS."""
+
+    def __init__(self, model_file, paths):
+        folder = Path(model_file).resolve().parent
+        self.folders = [folder, *list(folder.parents)[:_MAX_PARENTS], *map(Path, paths)]
+        for variable in _VARIABLES:
+            self.folders += [Path(name) for name in os.environ.get(variable, "").split(os.pathsep) if name]
+
+    def find(self, uri, element, kind="file"):
+        """The path of `uri`, which `element` names; a file or a folder."""
+        scheme, separator, rest = uri.strip().partition("://")
+        name = urllib.parse.unquote(rest if separator else uri.strip())
+        near = Path(element.file).resolve().parent
+        if not separator and name.startswith("file:"):
+            scheme, name = "file", name[len("file:") :]
+        if scheme == "file" and os.path.isabs(name):
+            candidates = [Path(name)]
+        elif scheme in ("model", "package"):
+            # The first part names a folder below one that is searched, or is the name of that folder itself.
+            first, _, inside = name.partition("/")
+            candidates = [near.parent / name]
+            for folder in [near, *self.folders]:
+                candidates += [folder / name, folder / "models" / name]
+                if folder.name == first:
+                    candidates.append(folder / inside)
+        elif scheme in ("http", "https"):
+            last = name.rstrip("/").split("/models/")[-1].split("/")[0]
+            candidates = [folder / last for folder in self.folders]
+        else:
+            candidates = [near / name, *(folder / name for folder in self.folders)]
+        for candidate in candidates:
+            if candidate.exists():
+                return candidate
+        hint = "Name the folder that contains it with --path"
+        if scheme in ("http", "https"):
+            hint = f"Download it (gz fuel download -u '{uri}') and name the folder that contains it with --path"
+        if "$" in uri:
+            hint = "Expand the file first (xacro, envsubst)"
+        searched = ", ".join(dict.fromkeys(str(candidate.parent) for candidate in candidates))
+        return fail(element.where, f"'{uri}' is not found", f"a {kind}, searched in {searched}",
+                    "another package, or a search path that is not set", hint)

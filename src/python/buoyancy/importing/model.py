@@ -1,0 +1,86 @@
+"""What every format is read into. Lengths in m, angles in rad, masses in kg; poses are in the frame of the model."""
+from dataclasses import dataclass, field
+from typing import Optional
+
+from .frames import IDENTITY
+
+# How gz-sim and MuJoCo fill a body whose mass they compute from its geometry [kg/m^3].
+DEFAULT_DENSITY = 1000.0
+
+
+@dataclass
+class Geometry:
+    """A shape or a mesh, with its pose in the frame of its link.
+
+    kind and size: box (x, y, z), sphere (r), cylinder and capsule (r, length without caps), cone (r, length),
+    ellipsoid (three radii), mesh (three factors). Centred, with the axis along z.
+    """
+
+    kind: str
+    size: tuple
+    pose: tuple
+    name: str
+    source: str
+    element: object
+    uri: str = ""
+    submesh: str = ""
+    center_submesh: bool = False
+    visual: bool = False
+    density: Optional[float] = None  # of links whose mass follows from geometry
+    mass: Optional[float] = None
+
+
+@dataclass
+class Inertial:
+    """Mass, centre of mass in the frame of the link, inertia about it in axes that `rotation` turns to the link's."""
+
+    mass: float
+    center: tuple
+    rotation: tuple
+    inertia: list  # 3 x 3
+    source: str
+    fluid_added_mass: Optional[list] = None  # 6 x 6, about the origin of the link and in its axes
+    fluid_source: str = ""
+
+
+@dataclass
+class Link:
+    name: str
+    pose: tuple
+    source: str
+    inertial: Optional[Inertial] = None
+    mass_from_geometry: bool = False
+    geometry: list = field(default_factory=list)
+    has_sensor: bool = False
+
+
+@dataclass
+class Joint:
+    name: str
+    parent: str  # a link, or "world"
+    child: str
+    fixed: bool
+
+
+@dataclass
+class Plugin:
+    """A plugin with the prefix of the model that it is written in, such as "arm::"."""
+
+    name: str
+    filename: str
+    element: object
+    prefix: str = ""
+
+
+@dataclass
+class Model:
+    name: str
+    source: str
+    format: str
+    links: dict = field(default_factory=dict)
+    joints: list = field(default_factory=list)
+    plugins: list = field(default_factory=list)
+    pose: tuple = IDENTITY  # in the world
+    gravity: Optional[tuple] = None
+    gravity_source: str = ""
+    canonical: str = ""  # the link whose frame a body prefers

@@ -1,0 +1,299 @@
+"""Frames, masses and bodies of imported models, compared with values computed by hand."""
+import math
+import unittest
+
+from importing_support import ImportTestCase, box, fixed, inertial, link, sdf
+
+HALF = math.sqrt(0.5)
+
+
+def pose(text, **attributes):
+    names = "".join(f" {name}='{value}'" for name, value in attributes.items())
+    return f"<pose{names}>{text}</pose>"
+
+
+class ImportsFramesOfSdf(ImportTestCase):
+    def position(self, inside, **arguments):
+        return self.import_model(sdf(inside, **arguments)).body["part"][0].get("position", [0, 0, 0])
+
+    def test_pose_of_collision_is_in_its_link(self):
+        result = self.import_model(
+            sdf(link(inside=box(pose=pose("1 2 3 0 0 1.5707963267948966")) + inertial(), pose=pose("9 9 9 0 0 0")))
+        )
+        part = result.body["part"][0]
+        self.assert_numbers(part["position"], [1, 2, 3])
+        self.assert_numbers(part["orientation"], [HALF, 0, 0, HALF])
+        self.assert_numbers(result.body["client"]["position"], [9, 9, 9])
+
+    def test_rpy_turns_about_fixed_axes(self):
+        # x to -z by pitch, then to -z by yaw: roll, pitch, yaw = 0, 90, 90 degrees is q_z q_y.
+        result = self.import_model(sdf(link(inside=box(pose=pose("0 0 0 0 90 90", degrees="true")) + inertial())))
+        self.assert_numbers(result.body["part"][0]["orientation"], [0.5, -0.5, 0.5, 0.5])
+
+    def test_quaternion_has_w_last(self):
+        result = self.import_model(
+            sdf(link(inside=box(pose=pose("0 0 0 1 0 0 1", rotation_format="quat_xyzw")) + inertial()))
+        )
+        self.assert_numbers(result.body["part"][0]["orientation"], [HALF, HALF, 0, 0])
+
+    def test_relative_to_follows_frames(self):
+        # The mount is at x = 5, turned by 90 degrees: its (1, 0, 0) is the model's (5, 1, 0).
+        frame = "<frame name='mount'>" + pose("5 0 0 0 0 90", degrees="true") + "</frame>"
+        inside = frame + link(inside=box(pose=pose("1 0 0 0 0 0", relative_to="mount")) + inertial())
+        self.assert_numbers(self.position(inside), [5, 1, 0])
+
+    def test_relative_to_model_undoes_pose_of_link(self):
+        inside = link(
+            inside=box(pose=pose("1 0 0 0 0 0", relative_to="__model__")) + inertial(), pose=pose("3 0 0 0 0 0")
+        )
+        self.assert_numbers(self.position(inside), [-2, 0, 0])
+
+    def test_frame_is_attached_to_link(self):
+        frame = "<frame name='mount' attached_to='base'>" + pose("0 0 1 0 0 0") + "</frame>"
+        inside = frame + link(
+            inside=box(pose=pose("0 1 0 0 0 0", relative_to="mount")) + inertial(), pose=pose("7 0 0 0 0 0")
+        )
+        self.assert_numbers(self.position(inside), [0, 1, 1])
+
+    def test_old_files_say_frame(self):
+        inside = link() + link("arm", inertial(1) + box("arm box"), pose("0 0 2 0 0 0", frame="base"))
+        inside = inside.replace("<link name='base'>", "<link name='base'>" + pose("0 4 0 0 0 0"))
+        result = self.import_model(sdf(inside + fixed("base", "arm"), version="1.6"))
+        self.assert_numbers(result.body["part"][1]["position"], [0, 0, 2])
+
+    def test_nested_models_compose(self):
+        inner = (
+            f"<model name='arm'>{pose('1 0 0 0 0 90', degrees='true')}"
+            f"{link('hand', inertial(1) + box('palm'), pose('0 2 0 0 0 0'))}</model>"
+        )
+        joint = fixed("base", "arm::hand")
+        part = self.import_model(sdf(link() + inner + joint)).body["part"][1]
+        self.assert_numbers(part["position"], [-1, 0, 0])
+        self.assert_numbers(part["orientation"], [HALF, 0, 0, HALF])
+
+    def test_placement_frame_is_what_pose_places(self):
+        inside = link(pose=pose("0 0 3 0 0 0"))
+        result = self.import_model(sdf(inside, pose=pose("10 0 0 0 0 0"), attributes="placement_frame='base'"))
+        self.assert_numbers(result.body["client"]["position"], [10, 0, 0])
+
+    def test_include_is_a_nested_model(self):
+        files = {
+            "models/arm/model.config": "<model><sdf version='1.9'>arm.sdf</sdf></model>",
+            "models/arm/arm.sdf": sdf(link("hand", inertial(1) + box("palm"))),
+        }
+        include = "<include><name>left</name><uri>model://arm</uri>" + pose("0 1 0 0 0 0") + "</include>"
+        part = self.import_model(sdf(link() + include + fixed("base", "left::hand")), files=files).body["part"][1]
+        self.assert_numbers(part["position"], [0, 1, 0])
+
+    def test_merged_include_keeps_names(self):
+        files = {"arm/model.sdf": sdf(link("hand", inertial(1) + box("palm"), pose("0 0 1 0 0 0")))}
+        include = "<include merge='true'><uri>model://arm</uri>" + pose("0 1 0 0 0 0") + "</include>"
+        part = self.import_model(sdf(link() + include + fixed("base", "hand")), files=files).body["part"][1]
+        self.assert_numbers(part["position"], [0, 1, 1])
+
+    def test_cycles_and_unknown_frames_are_refused(self):
+        cycle = (
+            "<frame name='a'>" + pose("0 0 0 0 0 0", relative_to="b") + "</frame>"
+            "<frame name='b'>" + pose("0 0 0 0 0 0", relative_to="a") + "</frame>"
+        )
+        self.assert_refused(sdf(cycle + link(pose=pose("0 0 0 0 0 0", relative_to="a"))), "relative to itself")
+        self.assert_refused(sdf(link(pose=pose("0 0 0 0 0 0", relative_to="nose"))), "'nose'", "model.sdf:1")
+
+    def test_gravity_gives_up(self):
+        text = (
+            sdf(link())
+            .replace("<model", "<world name='w'><gravity>0 0 9.8</gravity><model")
+            .replace("</model>", "</model></world>")
+        )
+        self.assertEqual(self.import_model(text).scene["world"], {"gravity": 9.8, "up": [0, 0, -1]})
+
+
+class SumsMassesOfLinks(ImportTestCase):
+    def client(self, *arguments, **more):
+        return self.import_model(*arguments, **more).body["client"]
+
+    def test_fixed_links_add_up(self):
+        # 2 kg at x = 0 and 1 kg at x = 3: the centre is at 1, and 2 + 4 kg m^2 come to y and z.
+        model = (
+            link(inside=box() + inertial(2, moments=(1, 1, 1)))
+            + link("nose", inertial(1, moments=(1, 1, 1)), pose("3 0 0 0 0 0"))
+            + fixed("base", "nose")
+        )
+        client = self.client(sdf(model))
+        self.assertEqual(client["mass"], 3)
+        self.assert_numbers(client["center_of_mass"], [1, 0, 0])
+        self.assert_numbers(client["inertia"], [2, 8, 8])
+
+    def test_inertia_is_turned_by_pose_of_inertial(self):
+        client = self.client(sdf(link(inside=box() + inertial(5, pose("0 0 1 0 0 90", degrees="true"), (2, 3, 4)))))
+        self.assert_numbers(client["center_of_mass"], [0, 0, 1])
+        self.assert_numbers(client["inertia"], [3, 2, 4])
+
+    def test_inertia_at_45_degrees_gets_products(self):
+        client = self.client(sdf(link(inside=box() + inertial(5, pose("0 0 0 0 0 45", degrees="true"), (2, 3, 4)))))
+        self.assert_numbers(client["inertia"], [2.5, 2.5, 4, -0.5, 0, 0])
+
+    def test_order_of_products(self):
+        client = self.client(sdf(link(inside=box() + inertial(5, "", (20, 30, 40), (1, 2, 3)))))
+        self.assert_numbers(client["inertia"], [20, 30, 40, 1, 2, 3])
+
+    def test_order_of_urdf(self):
+        urdf = """<robot name='boat'><link name='base'><inertial><origin xyz='0 0 1' rpy='0 0 1.5707963267948966'/>
+          <mass value='5'/><inertia ixx='20' ixy='1' ixz='2' iyy='30' iyz='3' izz='40'/></inertial>
+          <collision><geometry><box size='1 1 1'/></geometry></collision></link></robot>"""
+        client = self.client(urdf, name="boat.urdf")
+        # x to y, y to -x: Ixx' = Iyy, Ixy' = -Ixy, Ixz' = -Iyz, Iyz' = Ixz.
+        self.assert_numbers(client["inertia"], [30, 20, 40, -1, -3, 2])
+        self.assert_numbers(client["center_of_mass"], [0, 0, 1])
+
+    def test_impossible_inertia_is_left_out(self):
+        result = self.import_model(sdf(link(inside=box() + inertial(5, moments=(1, 1, 9)))))
+        self.assertNotIn("inertia", result.body["client"])
+        self.assertIn("no rigid body has the principal moments 1, 1, 9", result.output)
+        self.assertIn("# - inertia [1, 1, 9, 0, 0, 0]", result.text)
+
+    def test_automatic_inertia_follows_from_geometry(self):
+        inside = box(size="2 1 1") + "<inertial auto='true'><density>600</density></inertial>"
+        client = self.client(sdf(link(inside=inside), version="1.11"))
+        self.assertEqual(client["mass"], 1200)
+        self.assert_numbers(client["inertia"], [200, 500, 500])
+
+
+class GroupsLinksIntoBodies(ImportTestCase):
+    MODEL = sdf(
+        link()
+        + link("fin", box("fin box", "0.1 0.1 0.1") + inertial(1), pose("2 0 0 0 0 0"))
+        + link("propeller", box("blade", "0.1 0.1 0.1") + inertial(3))
+        + link("tether", inertial(4))
+        + link("mast", inertial(5) + box("mast box", "0.1 0.1 1"))
+        + fixed("base", "fin", "revolute")
+        + fixed("base", "propeller", "revolute")
+        + fixed("base", "tether", "ball")
+        + fixed("base", "mast")
+    )
+
+    def test_moving_joints_separate_bodies(self):
+        result = self.import_model(self.MODEL)
+        self.assertEqual([body["name"] for body in result.bodies], ["vehicle", "vehicle fin"])
+        self.assertEqual(result.body["client"]["mass"], 505)
+        self.assertEqual(len(result.body["part"]), 2)
+        self.assert_numbers(result.bodies[1]["client"]["position"], [2, 0, 0])
+        self.assertIn("'propeller' (model.sdf:1), 3 kg: is a propeller", result.output)
+        self.assertIn("'tether' (model.sdf:1), 4 kg: has no volume", result.output)
+        self.assertIn("left out have 7 kg", result.output)
+
+    def test_specks_have_no_volume(self):
+        speck = link("depth", box("speck", "1e-6 1e-6 1e-6") + inertial(0.01))
+        result = self.import_model(sdf(link() + speck + fixed("base", "depth", "revolute")))
+        self.assertEqual(len(result.bodies), 1)
+        self.assertIn("'depth' (model.sdf:1), 0.01 kg: has no volume", result.output)
+
+    def test_options_choose_links(self):
+        self.assert_refused(self.MODEL, "'rudder'", options=("--drop", "rudder"))
+        result = self.import_model(self.MODEL, "--keep", "propeller", "--drop", "fin", "--drop", "mast")
+        self.assertEqual([body["name"] for body in result.bodies], ["vehicle", "vehicle propeller"])
+        self.assertEqual(result.body["client"]["mass"], 500)
+
+    def test_links_are_bodies_on_request(self):
+        result = self.import_model(self.MODEL, "--links")
+        self.assertEqual([body["client"]["mass"] for body in result.bodies], [500, 1, 5])
+
+    def test_frame_of_body_is_that_of_its_root(self):
+        # The child comes first in the file.
+        model = (
+            link("mast", inertial(1) + box("mast box"), pose("0 0 1 0 0 0"))
+            + link(pose=pose("0 0 -1 0 0 0"))
+            + fixed("base", "mast")
+        )
+        result = self.import_model(sdf(model))
+        self.assert_numbers(result.body["part"][0]["position"], [0, 0, 2])
+        self.assert_numbers(result.body["client"]["position"], [0, 0, -1])
+
+    def test_world_needs_name_of_model(self):
+        models = "".join(f"<model name='{name}'>{link()}</model>" for name in ("one", "two"))
+        text = f"<sdf version='1.9'><world name='w'>{models}</world></sdf>"
+        self.assert_refused(text, "'one', 'two'", "--model NAME")
+        self.assertEqual(self.import_model(text, "--model", "two").body["name"], "two")
+
+    def test_visual_geometry_is_taken_on_request(self):
+        text = sdf(link(inside=box().replace("collision", "visual") + inertial()))
+        self.assert_refused(text, "no body has a volume", "--visual")
+        self.assertEqual(len(self.import_model(text, "--visual").body["part"]), 1)
+
+
+class ImportsUrdf(ImportTestCase):
+    def test_links_follow_joints(self):
+        urdf = """<robot name='boat'>
+          <link name='float'><inertial><mass value='10'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>
+            </inertial><collision><origin xyz='1 0 0'/><geometry><box size='4 1 1'/></geometry></collision></link>
+          <link name='base'/>
+          <joint name='j' type='fixed'><parent link='base'/><child link='float'/>
+            <origin xyz='0 2 0' rpy='0 0 1.5707963267948966'/></joint></robot>"""
+        result = self.import_model(urdf, name="boat.urdf")
+        self.assert_numbers(result.body["part"][0]["position"], [0, 3, 0])
+        self.assertEqual(result.body["client"]["mass"], 10)
+
+    def test_broken_trees_are_refused(self):
+        two = "<robot name='r'><link name='a'/><link name='b'/></robot>"
+        self.assert_refused(two, "2 root links (a, b)", name="two.urdf")
+        joint = "<joint name='j' type='fixed'><parent link='a'/><child link='c'/></joint>"
+        self.assert_refused(two.replace("</robot>", joint + "</robot>"), "'c', which does not exist", name="c.urdf")
+
+
+class ImportsMjcf(ImportTestCase):
+    def test_bodies_without_joint_are_welded(self):
+        model = """<mujoco><compiler angle='degree'/>
+          <default><default class='hull'><geom density='500'/></default></default>
+          <worldbody><body name='hull' pos='0 0 1' childclass='hull'><freejoint/>
+            <geom type='box' size='1 0.5 0.25'/>
+            <body name='mast' pos='0 0 1' euler='0 0 90'>
+              <geom type='box' size='0.2 0.1 0.5' pos='1 0 0' mass='7'/></body>
+          </body></worldbody></mujoco>"""
+        result = self.import_model(model, name="boat.xml")
+        body = result.body
+        self.assertEqual(body["part"][0]["shape"], {"type": "box", "size": [2, 1, 0.5]})
+        self.assert_numbers(body["part"][1]["position"], [0, 1, 1])
+        self.assertEqual(body["client"]["mass"], 507)
+        self.assert_numbers(body["client"]["position"], [0, 0, 1])
+        self.assert_numbers(body["client"]["center_of_mass"], [0, 7 / 507, 7 / 507])
+
+    def test_orientations(self):
+        for text, expected in (
+            ("quat='1 1 0 0'", [HALF, HALF, 0, 0]),
+            ("axisangle='0 0 2 90'", [HALF, 0, 0, HALF]),
+            ("xyaxes='0 1 0 -1 0 0'", [HALF, 0, 0, HALF]),
+            ("zaxis='0 -1 0'", [HALF, HALF, 0, 0]),
+            ("euler='90 0 90'", [0.5, 0.5, -0.5, 0.5]),
+        ):
+            model = f"""<mujoco><worldbody><body name='b'><freejoint/><geom type='box' size='1 1 1' {text}/></body>
+              </worldbody></mujoco>"""
+            part = self.import_model(model, name="b.xml").body["part"][0]
+            self.assert_numbers(part["orientation"], expected)
+
+    def test_order_of_full_inertia(self):
+        model = """<mujoco><worldbody><body name='b'><freejoint/><inertial mass='2' pos='0 0 0.5'
+          fullinertia='20 30 40 1 2 3'/><geom type='box' size='1 1 1'/></body></worldbody></mujoco>"""
+        client = self.import_model(model, name="b.xml").body["client"]
+        self.assert_numbers(client["inertia"], [20, 30, 40, 1, 2, 3])
+
+    def test_fluid_is_reported(self):
+        model = """<mujoco><option density='1000' viscosity='0.001'/><worldbody><body name='b'><freejoint/>
+          <geom type='ellipsoid' size='1 0.5 0.5' fluidshape='ellipsoid'/></body></worldbody></mujoco>"""
+        result = self.import_model(model, name="b.xml")
+        for words in ("density = 1000", "viscosity = 0.001", 'fluidshape = "ellipsoid"'):
+            self.assertIn(words, result.output)
+
+    def test_capsule_runs_from_to(self):
+        model = """<mujoco><worldbody><body name='b'><freejoint/><geom type='capsule' fromto='0 0 0 2 0 0' size='0.5'/>
+          </body></worldbody></mujoco>"""
+        result = self.import_model(model, name="b.xml")
+        part = result.body["part"][0]
+        self.assert_numbers(part["position"], [1, 0, 0])
+        self.assert_numbers(part["orientation"], [HALF, 0, HALF, 0])
+        volume = math.pi * 0.25 * 2 + 4 / 3 * math.pi * 0.125
+        self.assertAlmostEqual(result.open().bodies[0].volume / volume, 1, delta=1e-3)
+        self.assertAlmostEqual(result.body["client"]["mass"], 1000 * volume, places=6)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,197 @@
+"""Meshes, shapes, hostile and broken models, and the program itself."""
+import os
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+from importing_support import BOX_OBJ, ImportTestCase, box, fixed, inertial, link, sdf
+
+from buoyancy.importing import xml_file
+
+
+def mesh(uri, inside="", name="hull", pose=""):
+    return f"<collision name='{name}'>{pose}<geometry><mesh><uri>{uri}</uri>{inside}</mesh></geometry></collision>"
+
+
+class ImportsGeometry(ImportTestCase):
+    def test_factors_of_scale(self):
+        inside = mesh("hull.obj", "<scale>2 3 0.5</scale>", pose="<pose>1 0 0 0 0 0</pose>") + inertial(1500)
+        result = self.import_model(sdf(link(inside=inside)), files={"hull.obj": BOX_OBJ})
+        part = result.body["part"][0]
+        self.assertEqual(part["mesh"], {"file": "hull.obj", "scale": [2, 3, 0.5]})
+        self.assertEqual(part["position"], [1, 0, 0])
+        self.assertAlmostEqual(result.open().bodies[0].volume, 3)
+
+    def test_uris_are_searched(self):
+        files = {"other/boat/meshes/hull.obj": BOX_OBJ}
+        for uri in (
+            "model://boat/meshes/hull.obj",
+            "package://boat/meshes/hull.obj",
+            "boat/meshes/hull.obj",
+            f"file://{self.folder}/other/boat/meshes/hull.obj",
+        ):
+            text = sdf(link(inside=mesh(uri) + inertial()))
+            result = self.import_model(text, "--path", str(self.folder / "other"), files=files)
+            self.assertEqual(result.body["part"][0]["mesh"]["file"], "other/boat/meshes/hull.obj")
+        os.environ["GZ_SIM_RESOURCE_PATH"] = str(self.folder / "other")
+        self.addCleanup(os.environ.pop, "GZ_SIM_RESOURCE_PATH")
+        self.import_model(sdf(link(inside=mesh("model://boat/meshes/hull.obj") + inertial())))
+
+    def test_missing_mesh_names_places(self):
+        text = sdf(link(inside=mesh("model://boat/hull.obj") + inertial()))
+        self.assert_refused(
+            text,
+            "'model://boat/hull.obj' is not found",
+            "/elsewhere/boat",
+            "--path",
+            "model.sdf:1",
+            options=("--path", "/elsewhere"),
+        )
+
+    def test_submesh_is_cut_out(self):
+        lines = BOX_OBJ.splitlines()
+        second = [
+            line if line[0] != "v" else f"v {float(line.split()[1]) + 5} {' '.join(line.split()[2:])}" for line in lines
+        ]
+        second = [
+            "f " + " ".join(str(int(n) + 8) for n in line.split()[1:]) if line[0] == "f" else line for line in second
+        ]
+        files = {"two.obj": "\n".join(["o first", *lines, "o second", *second])}
+        submesh = "<submesh><name>second</name><center>{}</center></submesh>"
+        result = self.import_model(sdf(link(inside=mesh("two.obj", submesh.format("false")) + inertial())), files=files)
+        body = result.open().bodies[0]
+        self.assertAlmostEqual(body.volume, 1)
+        np.testing.assert_allclose(result.open().query(1, [0, 0, -9], [1, 0, 0, 0]).center_of_buoyancy, [5.5, 0.5, 0.5])
+        self.assertEqual(result.body["part"][0]["mesh"]["file"], "scene.d/body1_part0.obj")
+        result = self.import_model(sdf(link(inside=mesh("two.obj", submesh.format("true")) + inertial())))
+        np.testing.assert_allclose(
+            result.open().query(1, [0, 0, -9], [1, 0, 0, 0]).center_of_buoyancy, [0, 0, 0], atol=1e-9
+        )
+        self.assert_refused(
+            sdf(link(inside=mesh("two.obj", "<submesh><name>third</name></submesh>") + inertial())),
+            "no submesh 'third'",
+            "first, second",
+            name="third.sdf",
+        )
+
+    def test_shapes(self):
+        shapes = (
+            ("<sphere><radius>0.5</radius></sphere>", np.pi / 6),
+            ("<cylinder><radius>0.5</radius><length>2</length></cylinder>", np.pi / 2),
+            ("<capsule><radius>0.5</radius><length>2</length></capsule>", np.pi / 2 + np.pi / 6),
+            ("<ellipsoid><radii>1 0.5 0.25</radii></ellipsoid>", np.pi / 6),
+            ("<cone><radius>0.5</radius><length>2</length></cone>", np.pi / 6),
+        )
+        for shape, volume in shapes:
+            inside = f"<collision name='c'><geometry>{shape}</geometry></collision>" + inertial()
+            scene = self.import_model(sdf(link(inside=inside), version="1.12")).open()
+            self.assertAlmostEqual(scene.bodies[0].volume / volume, 1, delta=1.2e-3)
+            wrench = scene.query(1, [0, 0, -9], [1, 0, 0, 0])
+            expected = [0, 0, -0.5] if "cone" in shape else [0, 0, 0]
+            np.testing.assert_allclose(wrench.center_of_buoyancy, expected, atol=1e-9)
+
+    def test_overlapping_boxes_count_twice(self):
+        inside = box("a", "2 1 1") + box("b", "2 1 1", "<pose>1.5 0 0 0 0 0</pose>") + inertial()
+        self.assertIn(
+            "'a' and 'b' by 0.5 m^3 (25 % of the smaller)", self.import_model(sdf(link(inside=inside))).output
+        )
+        apart = inside.replace("1.5 0 0", "2 0 0")
+        self.assertNotIn("overlap", self.import_model(sdf(link(inside=apart))).output)
+
+    def test_millimetres_are_recognised(self):
+        inside = mesh("hull.obj", "<scale>1000 1000 1000</scale>") + inertial(416)
+        result = self.import_model(sdf(link(inside=inside)), files={"hull.obj": BOX_OBJ})
+        self.assertIn("scale = 0.001 gives 416 kg/m^3", result.output)
+
+    def test_holes_are_closed_aloud(self):
+        lines = BOX_OBJ.splitlines()
+        # A box without its narrow end.
+        open_box = "\n".join(line for line in lines if line != "f 4 1 5 8")
+        text = sdf(link(inside=mesh("hull.obj", "<scale>100 1 0.1</scale>") + inertial()))
+        result = self.import_model(text, files={"hull.obj": open_box})
+        self.assertEqual(result.body["part"][0]["close_holes"], 0.01)
+        self.assertIn("close_holes = 0.01 closes its holes", result.output)
+
+    def test_body_floats_as_computed_by_hand(self):
+        # A catamaran of two boxes 4 x 0.5 x 1: 820 kg displace 0.8 m^3, 0.2 m deep.
+        inside = box("port", "4 0.5 1", "<pose>0 1 0 0 0 0</pose>") + box(
+            "starboard", "4 0.5 1", "<pose>0 -1 0 0 0 0</pose>"
+        )
+        scene = self.import_model(sdf(link(inside=inside + inertial(820)))).open()
+        wrench = scene.query(1, [0, 0, 0.3], [1, 0, 0, 0])
+        np.testing.assert_allclose(wrench.force, [0, 0, 820 * 9.80665], rtol=1e-12, atol=1e-9)
+        np.testing.assert_allclose(wrench.torque, 0, atol=1e-9)
+
+
+class RefusesBrokenModels(ImportTestCase):
+    def test_entities(self):
+        bomb = "<!DOCTYPE sdf [<!ENTITY a 'aaaaaaaaaa'><!ENTITY b '&a;&a;&a;&a;'>]><sdf version='1.9'>&b;</sdf>"
+        self.assert_refused(bomb, "document type", "model.sdf:1")
+        outside = "<!DOCTYPE sdf SYSTEM 'file:///etc/passwd'><sdf version='1.9'/>"
+        self.assert_refused(outside, "document type")
+
+    def test_depth_and_size(self):
+        self.assert_refused("<a>" * 5000 + "</a>" * 5000, "nested at most 200 deep")
+        limit = xml_file.MAX_BYTES
+        self.addCleanup(setattr, xml_file, "MAX_BYTES", limit)
+        xml_file.MAX_BYTES = 1024 * 1024
+        self.assert_refused("<sdf>" + " " * (1024 * 1024) + "</sdf>", "more than 1 MiB")
+
+    def test_other_files(self):
+        self.assert_refused("hello", "is not XML")
+        self.assert_refused("<html/>", "root element is <html>")
+        self.assert_refused("<robot/>", "Expand it: xacro boat.urdf.xacro", name="boat.urdf.xacro")
+        self.assert_refused("<robot xmlns:xacro='x'><xacro:macro/></robot>", "elements of xacro", name="boat.urdf")
+        self.assert_refused("<sdf version='1.9'><model name='a'>", "is not XML")
+
+    def test_model_that_includes_itself(self):
+        text = sdf(link() + "<include><uri>model://vehicle</uri></include>")
+        self.assert_refused(text, "too deeply", name="vehicle/model.sdf")
+
+    def test_numbers(self):
+        self.assert_refused(sdf(link(inside=box(size="1 1") + inertial())), "size [1.0, 1.0]", "3 lengths")
+        self.assert_refused(sdf(link(inside=box(size="1 nan 1") + inertial())), "'1 nan 1'", "finite numbers")
+        self.assert_refused(sdf(link(inside=box(size="1 1 -1") + inertial())), "lengths above 0")
+        self.assert_refused(sdf(link(pose="<pose>0 0 ${z}</pose>")), "template that was not expanded")
+
+    def test_joint_of_unknown_link(self):
+        self.assert_refused(sdf(link() + fixed("base", "mast")), "'mast'")
+
+    def test_missing_file(self):
+        result = self.run_import(sdf(link()), "--path", "/nowhere")
+        self.assertEqual(result.status, 0)
+        done = subprocess.run(
+            [sys.executable, "-m", "buoyancy.import_model", "none.sdf"], capture_output=True, text=True, check=False
+        )
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("none.sdf: cannot be read", done.stderr)
+
+
+class PrintsScene(ImportTestCase):
+    def test_without_output(self):
+        (self.folder / "model.sdf").write_text(sdf(link()), encoding="utf-8")
+        done = subprocess.run(
+            [sys.executable, "-m", "buoyancy.import_model", self.folder / "model.sdf"],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        self.assertIn("[[body]]", done.stdout)
+        self.assertIn("not converted: nothing", done.stderr)
+
+    def test_every_value_has_its_source(self):
+        text = self.import_model(sdf(link())).text
+        for line in text.splitlines():
+            if " = " in line and not line.startswith("#"):
+                self.assertIn("#", line)
+        self.assertIn("# kg, model.sdf:1", text)
+
+    def test_unwritable_output(self):
+        result = self.run_import(sdf(link()), "-o", str(self.folder / "none" / "scene.toml"))
+        self.assertEqual(result.status, 1)
+        self.assertEqual(len(result.error.splitlines()), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
