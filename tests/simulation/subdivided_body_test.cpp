@@ -10,6 +10,7 @@
 #include "base/format.h"
 #include "engine/body_evaluation.h"
 #include "messages/conversions.h"
+#include "scene/body_motions.h"
 #include "simulation/natural_frequency.h"
 #include "simulation/run_summary.h"
 #include "simulation/run_warnings.h"
