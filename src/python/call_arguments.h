@@ -1,9 +1,10 @@
-// The arguments of methods that Python calls by its fastest convention (METH_FASTCALL). pybind11 takes one to
-// two microseconds for a dozen keyword arguments, more than a query of a dry body.
+// Methods that Python calls by its fastest convention (METH_FASTCALL), since pybind11 takes one to two
+// microseconds for a dozen keyword arguments, more than a query of a dry body; and properties.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <string>
 
 #include <pybind11/pybind11.h>
@@ -12,22 +13,26 @@
 
 namespace buoyancy::python {
 
+template <std::size_t kCount>
+using Parameters = std::array<const char*, kCount>;
+
+// One object per parameter, borrowed from the caller; nullptr where it was left out.
+template <std::size_t kCount>
+using Arguments = std::array<PyObject*, kCount>;
+
 // The names of a method's parameters in their order. Created once, never destroyed.
 template <std::size_t kCount>
 class Signature {
  public:
-  // positional: how many parameters may be passed by position; required: how many must be passed.
-  Signature(const char* method, std::size_t positional, std::size_t required,
-            const std::array<const char*, kCount>& names)
-      : method_(method), positional_(positional), required_(required), text_(names) {
+  // The first `positional` parameters must be passed, and may be by position; all others are keywords.
+  Signature(const char* method, std::size_t positional, const Parameters<kCount>& names)
+      : method_(method), positional_(positional), text_(names) {
     for (std::size_t i = 0; i < kCount; ++i) names_[i] = PyUnicode_InternFromString(names[i]);
   }
 
-  // One object per parameter, borrowed from the caller; nullptr where it was left out. Throws a TypeError as
-  // Python's own functions do.
-  std::array<PyObject*, kCount> parse(PyObject* const* arguments, Py_ssize_t count,
-                                      PyObject* keywords) const {
-    std::array<PyObject*, kCount> values{};
+  // Throws a TypeError as Python's own functions do.
+  Arguments<kCount> parse(PyObject* const* arguments, Py_ssize_t count, PyObject* keywords) const {
+    Arguments<kCount> values{};
     const auto by_position = static_cast<std::size_t>(count);
     if (by_position > positional_) {
       fail("takes at most " + std::to_string(positional_) + " positional arguments, got " +
@@ -43,7 +48,7 @@ class Signature {
       if (values[i] != nullptr) fail(std::string("got multiple values for argument '") + text_[i] + "'");
       values[i] = arguments[count + k];
     }
-    for (std::size_t i = 0; i < required_; ++i) {
+    for (std::size_t i = 0; i < positional_; ++i) {
       if (values[i] == nullptr) fail(std::string("is missing the argument '") + text_[i] + "'");
     }
     return values;
@@ -64,29 +69,40 @@ class Signature {
   }
 
   const char* method_;
-  std::size_t positional_, required_;
-  std::array<const char*, kCount> text_;
+  std::size_t positional_;
+  Parameters<kCount> text_;
   std::array<PyObject*, kCount> names_{};
 };
 
-// Calls a function that returns a py::object and may throw, and returns a new reference or nullptr with
-// Python's error indicator set.
-template <typename Function>
-PyObject* guarded(Function function) noexcept {
-  const DefaultFloatingPoint floating_point;
-  try {
-    return function().release().ptr();
-  } catch (...) {
-    set_python_error();
-    return nullptr;
-  }
-}
-
-// Adds such a method to a class.
-inline void add_method(py::handle type, PyMethodDef& definition) {
+// Adds kMethod to a class: a function of self and of the arguments, which returns a py::object and may throw.
+// positional: see Signature.
+template <auto kMethod, std::size_t kCount>
+void add_method(py::handle type, const char* name, std::size_t positional,
+                const Parameters<kCount>& parameters, const char* doc) {
+  static const Signature<kCount> signature(name, positional, parameters);
+  using Caller = PyObject* (*)(PyObject*, PyObject* const*, Py_ssize_t, PyObject*);
+  const Caller call = [](PyObject* self, PyObject* const* arguments, Py_ssize_t count,
+                         PyObject* keywords) noexcept -> PyObject* {
+    const DefaultFloatingPoint floating_point;
+    try {
+      return kMethod(self, signature.parse(arguments, count, keywords)).release().ptr();
+    } catch (...) {
+      set_python_error();
+      return nullptr;
+    }
+  };
+  static PyMethodDef definition{name, reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(call)),
+                                METH_FASTCALL | METH_KEYWORDS, doc};
   PyObject* const method = PyDescr_NewMethod(reinterpret_cast<PyTypeObject*>(type.ptr()), &definition);
   if (method == nullptr) throw py::error_already_set();
-  type.attr(definition.ml_name) = py::reinterpret_steal<py::object>(method);
+  type.attr(name) = py::reinterpret_steal<py::object>(method);
+}
+
+// Adds a read-only property. value: a member of the object, or a function of it.
+template <typename T, typename Value>
+void add_property(py::class_<T>& type, const char* name, Value value, const char* doc) {
+  type.def_property_readonly(
+      name, [value](py::handle self) { return std::invoke(value, instance_of<T>(self)); }, doc);
 }
 
 // Borrowed arguments that were left out, or None, have their default.

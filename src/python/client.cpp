@@ -2,11 +2,14 @@
 
 #include "client/client.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -16,14 +19,12 @@
 
 #include "base/format.h"
 #include "messages/wire_layout.h"
+#include "python/arrays.h"
 #include "python/call_arguments.h"
 #include "python/module.h"
-#include "python/number_array.h"
 #include "python/pose_input.h"
-#include "python/result_array.h"
 #include "python/scene_object.h"
 #include "python/wrenches.h"
-#include "scene/mesh_warnings.h"
 #include "scene/scene_fingerprint.h"
 
 namespace buoyancy::python {
@@ -93,14 +94,12 @@ class BusyClient {
 std::shared_ptr<const Scene> to_scene(const py::object& scene) {
   if (scene.is_none()) return nullptr;
   if (py::isinstance<SceneObject>(scene)) return instance_of<SceneObject>(scene).scene;
-  const std::string path = to_path(scene);
-  std::shared_ptr<const Scene> loaded;
-  {
-    const WithoutGil released;
-    loaded = std::make_shared<const Scene>(value_or_throw(Scene::load(path)));
-  }
-  for (const Warning& warning : mesh_warnings(*loaded)) warn(warning);
-  return loaded;
+  return load_scene(scene);
+}
+
+void check_seconds(const char* argument, double seconds, const char* expected) {
+  if (std::isfinite(seconds) && seconds > 0.0) return;
+  throw py::value_error(std::string(argument) + " = " + format_shortest(seconds) + "; expected " + expected);
 }
 
 std::unique_ptr<ClientObject> open(const std::optional<std::string>& lcm_url, const py::object& scene,
@@ -108,13 +107,10 @@ std::unique_ptr<ClientObject> open(const std::optional<std::string>& lcm_url, co
                                    bool loads, const std::string& states_channel,
                                    const std::string& wrenches_channel, const std::string& loads_channel,
                                    const std::string& status_channel) {
-  if (!(std::isfinite(timeout) && timeout > 0.0))
-    throw py::value_error("timeout = " + format_shortest(timeout) + "; expected seconds above 0");
+  check_seconds("timeout", timeout, "seconds above 0");
   if (max_retries < 0)
     throw py::value_error("max_retries = " + std::to_string(max_retries) + "; expected 0 or more");
-  if (interval && !(std::isfinite(*interval) && *interval > 0.0)) {
-    throw py::value_error("interval = " + format_shortest(*interval) + "; expected seconds above 0, or None");
-  }
+  if (interval) check_seconds("interval", *interval, "seconds above 0, or None");
   auto object = std::make_unique<ClientObject>();
   object->scene = to_scene(scene);
   object->has_loads = loads;
@@ -141,9 +137,7 @@ std::int32_t to_body_id(const ClientObject& object, py::handle id) {
     throw py::type_error("body_ids has the name " + std::string(py::repr(id)) +
                          "; expected an int: names need Client(scene=...)");
   }
-  const NumberArray<std::int64_t> number(id.ptr(), "body_ids");
-  if (number.dimensions() != 0) throw py::type_error("body_ids has a nested array; expected ints");
-  const std::int64_t value = number.values()[0];
+  const auto value = to_number<std::int64_t>(id.ptr(), "body_ids");
   if (value != static_cast<std::int32_t>(value)) {
     throw py::value_error("body_ids has " + std::to_string(value) + "; expected a number of 32 bits");
   }
@@ -182,11 +176,7 @@ BodyIds to_body_ids(const ClientObject& object, PyObject* given) {
 std::int64_t to_utime(PyObject* time, PyObject* utime) {
   if (is_given(time) && is_given(utime))
     throw py::type_error("request() got time and utime; expected one of them");
-  if (is_given(utime)) {
-    const NumberArray<std::int64_t> number(utime, "utime");
-    if (number.dimensions() != 0) throw py::type_error("utime is an array; expected one int of microseconds");
-    return number.values()[0];
-  }
+  if (is_given(utime)) return to_number<std::int64_t>(utime, "utime");
   bool many = false;
   const std::vector<std::int64_t> utimes = to_utimes(time, many);
   if (many) throw py::value_error("time is an array; expected one number: a request has one time");
@@ -225,46 +215,44 @@ void store(const WrenchResponse& response, const BodiesLoads& loads, bool with_l
   }
 }
 
-PyObject* request(PyObject* self, PyObject* const* arguments, Py_ssize_t count, PyObject* keywords) {
-  static const Signature<9> signature("request", 3, 3,
-                                      {"body_ids", "position", "quaternion", "linear_velocity",
-                                       "angular_velocity", "time", "utime", "lead_time", "out"});
-  return guarded([&]() -> py::object {
-    const auto [body_ids, position, quaternion, linear, angular, time, utime, lead_time, out] =
-        signature.parse(arguments, count, keywords);
-    auto& object = instance_of<ClientObject>(self);
-    const BodyIds bodies = to_body_ids(object, body_ids);
-    const PoseInput poses({position, quaternion, linear, angular, nullptr});
-    const bool single = bodies.single && poses.single();
-    if (bodies.ids.size() != poses.size() && !bodies.single) {
-      throw py::value_error(
-          "body_ids names " + pluralize(static_cast<std::int64_t>(bodies.ids.size()), "body", "bodies") +
-          ", but the poses are " + std::to_string(poses.size()) + "; expected one pose per body");
-    }
-    const std::int64_t at = to_utime(time, utime);
-    const double lead = lead_time == nullptr ? 0.0 : to_double(lead_time, "lead_time");
-    py::object result = wrenches_for(out, poses.size(), single);
-    const BusyClient busy(object);
-    fill_states(poses.arrays(), bodies.ids, object.states);
-    object.signals.start();
-    const auto response = [&] {
-      const WithoutGil released;
-      return object.client->request(at, object.states, lead);
-    }();
-    if (PyErr_Occurred() != nullptr) throw py::error_already_set();  // of a signal
-    if (!response) {
-      if (object.closing) fail("was closed while it waited", "an open client", "");
-      throw ServiceException(response.error());
-    }
-    if (const Warning* const other = object.client->scene_warning(); other != nullptr && !object.has_warned) {
-      object.has_warned = true;
-      warn(*other);
-    }
-    static const BodiesLoads no_loads;
-    store(**response, object.has_loads ? object.client->loads() : no_loads, object.has_loads,
-          instance_of<Wrenches>(result));
-    return result;
-  });
+constexpr Parameters<9> kRequestParameters{"body_ids",        "position",         "quaternion",
+                                           "linear_velocity", "angular_velocity", "time",
+                                           "utime",           "lead_time",        "out"};
+
+py::object request(PyObject* self, const Arguments<9>& arguments) {
+  const auto& [body_ids, position, quaternion, linear, angular, time, utime, lead_time, out] = arguments;
+  auto& object = instance_of<ClientObject>(self);
+  const BodyIds bodies = to_body_ids(object, body_ids);
+  const PoseInput poses({position, quaternion, linear, angular, nullptr});
+  const bool single = bodies.single && poses.single();
+  if (bodies.ids.size() != poses.size() && !bodies.single) {
+    throw py::value_error(
+        "body_ids names " + pluralize(static_cast<std::int64_t>(bodies.ids.size()), "body", "bodies") +
+        ", but the poses are " + std::to_string(poses.size()) + "; expected one pose per body");
+  }
+  const std::int64_t at = to_utime(time, utime);
+  const double lead = lead_time == nullptr ? 0.0 : to_number<double>(lead_time, "lead_time");
+  py::object result = wrenches_for(out, poses.size(), single);
+  const BusyClient busy(object);
+  fill_states(poses.arrays(), bodies.ids, object.states);
+  object.signals.start();
+  const auto response = [&] {
+    const WithoutGil released;
+    return object.client->request(at, object.states, lead);
+  }();
+  if (PyErr_Occurred() != nullptr) throw py::error_already_set();  // of a signal
+  if (!response) {
+    if (object.closing) fail("was closed while it waited", "an open client", "");
+    throw ServiceException(response.error());
+  }
+  if (const Warning* const other = object.client->scene_warning(); other != nullptr && !object.has_warned) {
+    object.has_warned = true;
+    warn(*other);
+  }
+  static const BodiesLoads no_loads;
+  store(**response, object.has_loads ? object.client->loads() : no_loads, object.has_loads,
+        instance_of<Wrenches>(result));
+  return result;
 }
 
 void close(py::handle self) {
@@ -286,22 +274,15 @@ py::dict statistics(py::handle self) {
   const BusyClient busy(object);
   const ClientStats stats = object.client->statistics();
   const LatencyPercentiles round_trip = stats.round_trip.percentiles();
-  py::dict values;
-  values["requests"] = stats.requests;
-  values["retries"] = stats.retries;
-  values["unanswered"] = stats.unanswered;
-  values["late"] = stats.late;
-  values["max_lag"] = stats.max_lag;
-  values["malformed"] = stats.malformed;
-  values["round_trip_p50"] = round_trip.p50;
-  values["round_trip_p99"] = round_trip.p99;
-  values["round_trip_max"] = round_trip.max;
-  return values;
+  using namespace py::literals;
+  return py::dict("requests"_a = stats.requests, "retries"_a = stats.retries,
+                  "unanswered"_a = stats.unanswered, "late"_a = stats.late, "max_lag"_a = stats.max_lag,
+                  "malformed"_a = stats.malformed, "round_trip_p50"_a = round_trip.p50,
+                  "round_trip_p99"_a = round_trip.p99, "round_trip_max"_a = round_trip.max);
 }
 
 py::dict status(py::handle self, double timeout) {
-  if (!(std::isfinite(timeout) && timeout > 0.0))
-    throw py::value_error("timeout = " + format_shortest(timeout) + "; expected seconds above 0");
+  check_seconds("timeout", timeout, "seconds above 0");
   auto& object = instance_of<ClientObject>(self);
   const BusyClient busy(object);
   object.signals.start();
@@ -324,40 +305,38 @@ py::dict status(py::handle self, double timeout) {
 }
 
 constexpr const char* kClientDoc =
-    "Sends poses to buoyancyd over LCM and receives the wrenches.\n\n"
-    "Client(lcm_url=None, scene=None, *, timeout=0.1, max_retries=50, interval=None, loads=False,\n"
-    "       states_channel='BUOYANCY_STATES', wrenches_channel='BUOYANCY_WRENCHES', "
-    "loads_channel='BUOYANCY_LOADS',\n"
-    "       status_channel='BUOYANCY_STATUS')\n\n"
-    "lcm_url: None for LCM_DEFAULT_URL or LCM's default. scene: a Scene or the path of the service's scene "
-    "file; bodies\n"
-    "can then be named, unknown ones are refused before they are sent, and a service with another scene "
-    "gets a\n"
-    "UserWarning. timeout, max_retries: a request "
-    "is sent\n"
-    "again after each timeout (s), at most max_retries times. interval: None to wait for the response to "
-    "each\n"
-    "request; else seconds between requests, each of which returns the newest response there is. loads: "
-    "receive\n"
-    "drag and added mass too; at least one body of each request must have the output \"loads\".\n\n"
-    "Use it in one thread at a time, and close it: `with buoyancy.Client() as client:`.\n\n"
-    "Raises ServiceError if LCM cannot be opened; the text says what to do.";
+    R"(Sends poses to buoyancyd over LCM and receives the wrenches.
+
+Client(lcm_url=None, scene=None, *, timeout=0.1, max_retries=50, interval=None, loads=False,
+       states_channel='BUOYANCY_STATES', wrenches_channel='BUOYANCY_WRENCHES',
+       loads_channel='BUOYANCY_LOADS',
+       status_channel='BUOYANCY_STATUS')
+
+lcm_url: None for LCM_DEFAULT_URL or LCM's default. scene: a Scene or the path of the service's scene
+file; bodies can then be named, unknown ones are refused before they are sent, and a service with another
+scene gets a UserWarning. timeout, max_retries: a request is sent again after each timeout (s), at most
+max_retries times. interval: None to wait for the response to each request; else seconds between requests,
+each of which returns the newest response there is. loads: receive drag and added mass too; at least one
+body of each request must have the output "loads".
+
+Use it in one thread at a time, and close it: `with buoyancy.Client() as client:`.
+
+Raises ServiceError if LCM cannot be opened; the text says what to do.)";
 
 constexpr const char* kRequestDoc =
-    "request($self, body_ids, position, quaternion, *, linear_velocity=None, angular_velocity=None,\n"
-    "        time=0.0, utime=None, lead_time=0.0, out=None)\n--\n\n"
-    "The wrenches on bodies in these states, one per body in their order: a Wrenches.\n\n"
-    "body_ids: one id or name for one pose or for K poses of that body, K of them for K poses, or None for "
-    "all\n"
-    "bodies of the scene. position, quaternion, linear_velocity, angular_velocity, out: as Scene.query(). "
-    "time: seconds;\n"
-    "utime: microseconds, instead of it. lead_time: s, evaluates at the poses extrapolated by this much.\n\n"
-    "Waits without the interpreter's lock; Ctrl-C ends the wait. Raises ServiceError when no response has "
-    "arrived\n"
-    "after all retries, for a closed client, and for one that another thread uses.";
+    R"(request($self, body_ids, position, quaternion, *, linear_velocity=None, angular_velocity=None,
+        time=0.0, utime=None, lead_time=0.0, out=None)
+--
 
-PyMethodDef request_method{"request", reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&request)),
-                           METH_FASTCALL | METH_KEYWORDS, kRequestDoc};
+The wrenches on bodies in these states, one per body in their order: a Wrenches.
+
+body_ids: one id or name for one pose or for K poses of that body, K of them for K poses, or None for all
+bodies of the scene. position, quaternion, linear_velocity, angular_velocity, out: as Scene.query(). time:
+seconds; utime: microseconds, instead of it. lead_time: s, evaluates at the poses extrapolated by this
+much.
+
+Waits without the interpreter's lock; Ctrl-C ends the wait. Raises ServiceError when no response has
+arrived after all retries, for a closed client, and for one that another thread uses.)";
 
 }  // namespace
 
@@ -370,23 +349,26 @@ void define_client(py::module_& module) {
            py::arg("wrenches_channel") = std::string(kWrenchesChannel),
            py::arg("loads_channel") = std::string(kLoadsChannel),
            py::arg("status_channel") = std::string(kStatusChannel));
-  add_method(type, request_method);
-  type.def(
-      "close", &close,
-      "close($self)\n--\n\nEnd the connection. Every later request raises a ServiceError; a second call does "
-      "nothing.");
-  type.def_property_readonly(
-      "closed", [](py::handle self) { return !instance_of<ClientObject>(self).client.has_value(); }, "bool.");
-  type.def(
-      "reserve", &reserve, py::arg("bodies"),
-      "reserve($self, bodies)\n--\n\nPrepare for requests about this many bodies. Returns a warning if the "
-      "kernel's buffer is too small for\ntheir responses, else None.");
-  type.def(
-      "status", &status, py::arg("timeout") = 2.0,
-      "status($self, timeout=2.0)\n--\n\nThe next status of the service, which comes once a second: a dict "
-      "with the fields of service_status_t.\nWaits without the interpreter's lock. Raises ServiceError if "
-      "none "
-      "arrives within timeout (s).");
+  add_method<&request>(type, "request", 3, kRequestParameters, kRequestDoc);
+  type.def("close", &close,
+           R"(close($self)
+--
+
+End the connection. Every later request raises a ServiceError; a second call does nothing.)");
+  add_property(
+      type, "closed", [](const ClientObject& object) { return !object.client.has_value(); }, "bool.");
+  type.def("reserve", &reserve, py::arg("bodies"),
+           R"(reserve($self, bodies)
+--
+
+Prepare for requests about this many bodies. Returns a warning if the kernel's buffer is too small for
+their responses, else None.)");
+  type.def("status", &status, py::arg("timeout") = 2.0,
+           R"(status($self, timeout=2.0)
+--
+
+The next status of the service, which comes once a second: a dict with the fields of service_status_t.
+Waits without the interpreter's lock. Raises ServiceError if none arrives within timeout (s).)");
   type.def_property_readonly(
       "statistics", &statistics,
       "dict: requests, retries, unanswered, late, max_lag, malformed, and round_trip_p50, _p99, _max in s.");

@@ -67,12 +67,13 @@ void define_exceptions(py::module_& module) {
                       py::make_tuple(py::handle(PyExc_Exception)));
   py::dict attributes;
   attributes["report"] = py::none();
-  input_error_type =
-      define(module, "InputError",
-             "A mesh, a scene, a sea, a file or a number that cannot be used. The text says what "
-             "was found, what is expected, the likely cause and what to do.\n\n"
-             "report: str, the whole report of a mesh that is refused; None for other errors.",
-             with_base(PyExc_ValueError), attributes);
+  input_error_type = define(
+      module, "InputError",
+      R"(A mesh, a scene, a sea, a file or a number that cannot be used. The text says what was found, what is
+expected, the likely cause and what to do.
+
+report: str, the whole report of a mesh that is refused; None for other errors.)",
+      with_base(PyExc_ValueError), attributes);
   service_error_type = define(module, "ServiceError",
                               "No response from buoyancyd, a failure of the network, or a closed client.",
                               with_base(PyExc_RuntimeError));
@@ -94,15 +95,11 @@ void take_gil_again(PyThreadState* state) noexcept {
 
 void set_python_error() noexcept {
   try {
-    throw;
+    translate(std::current_exception());
   } catch (py::error_already_set& error) {
     error.restore();
   } catch (const py::builtin_exception& exception) {
     exception.set_error();
-  } catch (const InputException& exception) {
-    set_error(exception);
-  } catch (const ServiceException& exception) {
-    set_error(service_error_type, exception.what());
   } catch (const std::bad_alloc&) {
     PyErr_NoMemory();
   } catch (const std::exception& exception) {

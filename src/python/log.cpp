@@ -4,6 +4,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -17,9 +18,9 @@
 #include "messages/body_csv.h"
 #include "messages/wire.h"
 #include "messages/wire_views.h"
+#include "python/arrays.h"
 #include "python/call_arguments.h"
 #include "python/module.h"
-#include "python/result_array.h"
 #include "recording/event_log.h"
 #include "recording/sequence_gaps.h"
 #include "recording/state_csv.h"
@@ -27,41 +28,32 @@
 namespace buoyancy::python {
 namespace {
 
-// A column per field, a row per body of every message.
-struct Columns {
-  std::vector<std::int64_t> timestamp, utime, session_id, seq;
-  std::vector<std::int32_t> body_id, status;
-  std::vector<double> lead_time, position, quaternion, linear_velocity, angular_velocity;
-  std::vector<double> force, torque, volume, center_of_buoyancy, force_error_bound, torque_error_bound;
-
-  void add(std::int64_t at, const RequestId& id, std::int32_t body) {
-    timestamp.push_back(at);
-    utime.push_back(id.utime);
-    session_id.push_back(id.session_id);
-    seq.push_back(id.seq);
-    body_id.push_back(body);
-  }
+// A row per body of every message.
+struct Origin : RequestId {
+  std::int64_t timestamp = 0;  // [us]
 };
-
-template <std::size_t kCount>
-void append(const std::array<double, kCount>& values, std::vector<double>& column) {
-  column.insert(column.end(), values.begin(), values.end());
-}
+struct StateRow : Origin, BodyState {
+  double lead_time = 0.0;  // [s]
+};
+struct WrenchRow : Origin, BodyWrench {};
 
 struct Log {
-  Columns states, wrenches;
+  std::vector<StateRow> states;
+  std::vector<WrenchRow> wrenches;
   std::vector<std::string> corrupt_sections;
   SequenceGaps requests, responses;
   std::int64_t rejected = 0;  // messages on the channels that are none of the expected type
 };
 
 // The part of a log that holds states or wrenches; keeps the log alive.
-struct StatesView {
+template <auto kRows>
+struct TableView {
   py::object log;
+
+  auto rows() const { return std::span(instance_of<Log>(log).*kRows); }
 };
-struct WrenchesView {
-  py::object log;
-};
+using StatesView = TableView<&Log::states>;
+using WrenchesView = TableView<&Log::wrenches>;
 
 void add_request(std::int64_t timestamp, Bytes bytes, Log& log) {
   const auto request = RequestView::of(bytes);
@@ -71,25 +63,8 @@ void add_request(std::int64_t timestamp, Bytes bytes, Log& log) {
   }
   log.requests.add(request->id().session_id, request->id().seq);
   for (std::size_t i = 0; i < request->size(); ++i) {
-    const BodyState state = request->body(i);
-    log.states.add(timestamp, request->id(), state.body_id);
-    log.states.lead_time.push_back(request->lead_time());
-    append(state.position, log.states.position);
-    append(state.quaternion_wxyz, log.states.quaternion);
-    append(state.linear_velocity, log.states.linear_velocity);
-    append(state.angular_velocity, log.states.angular_velocity);
+    log.states.push_back({{request->id(), timestamp}, request->body(i), request->lead_time()});
   }
-}
-
-void add_wrench(std::int64_t timestamp, const RequestId& id, const BodyWrench& wrench, Columns& columns) {
-  columns.add(timestamp, id, wrench.body_id);
-  columns.status.push_back(static_cast<std::int32_t>(wrench.status));
-  append(wrench.force, columns.force);
-  append(wrench.torque, columns.torque);
-  columns.volume.push_back(wrench.submerged_volume);
-  append(wrench.center_of_buoyancy, columns.center_of_buoyancy);
-  columns.force_error_bound.push_back(wrench.force_error_bound);
-  columns.torque_error_bound.push_back(wrench.torque_error_bound);
 }
 
 // Reads all items of a log or a CSV file, and what could not be read.
@@ -119,8 +94,9 @@ void read_event_log(const std::string& path, const std::string& states_channel,
       return;
     }
     log.responses.add(response.id.session_id, response.id.seq);
-    for (const BodyWrench& wrench : response.bodies)
-      add_wrench(event.timestamp, response.id, wrench, log.wrenches);
+    for (const BodyWrench& wrench : response.bodies) {
+      log.wrenches.push_back({{response.id, event.timestamp}, wrench});
+    }
   });
   if (const std::optional<Error>& error = reader.file().read_error()) throw InputException(*error);
 }
@@ -153,7 +129,7 @@ void read_wrench_csv(std::ifstream& file, Log& log) {
     std::int64_t utime = 0;
     BodyWrench wrench;
     if (parse_wrench_row(line, utime, wrench)) {
-      add_wrench(utime, {utime, kCsvSession, 0}, wrench, log.wrenches);
+      log.wrenches.push_back({{{utime, kCsvSession, 0}, utime}, wrench});
     } else {
       log.corrupt_sections.push_back("line " + std::to_string(number) +
                                      ": expected the numbers of the header, found " + quote(line));
@@ -191,33 +167,28 @@ std::unique_ptr<Log> read_log(const py::object& file, const std::string& states_
   return log;
 }
 
-// Adds a property (rows, width), or (rows,) for a width of 1.
-template <typename View, typename Number>
-void add_column(py::class_<View>& type, const char* name, Columns Log::*table,
-                std::vector<Number> Columns::*column, Py_ssize_t width, const char* doc) {
-  type.def_property_readonly(
-      name,
-      [=](py::handle self) {
-        const py::object& owner = instance_of<View>(self).log;
-        std::vector<Number>& values = instance_of<Log>(owner).*table.*column;
-        std::vector<Py_ssize_t> shape{static_cast<Py_ssize_t>(values.size()) / width};
-        if (width > 1) shape.push_back(width);
-        return make_array(std::move(shape), values.data(), owner);
-      },
+// Adds an array of one member of all rows.
+template <typename View, typename Member>
+void add_column(py::class_<View>& type, const char* name, Member member, const char* doc) {
+  add_property(
+      type, name, [member](const View& view) { return record_field(view.rows(), false, view.log, member); },
       doc);
 }
 
 template <typename View>
-void add_common_columns(py::class_<View>& type, Columns Log::*table) {
-  type.def("__len__", [=](py::handle self) {
-    return (instance_of<Log>(instance_of<View>(self).log).*table).utime.size();
-  });
-  add_column(type, "timestamp", table, &Columns::timestamp, 1,
+void add_common_columns(py::class_<View>& type) {
+  type.def("__len__", [](py::handle self) { return instance_of<View>(self).rows().size(); });
+  add_column(type, "timestamp", &Origin::timestamp,
              "(N,) int64, us: when it was recorded; of a CSV the utime.");
-  add_column(type, "utime", table, &Columns::utime, 1, "(N,) int64, us: of the message.");
-  add_column(type, "session_id", table, &Columns::session_id, 1, "(N,) int64.");
-  add_column(type, "seq", table, &Columns::seq, 1, "(N,) int64: equal for the bodies of one message.");
-  add_column(type, "body_id", table, &Columns::body_id, 1, "(N,) int32.");
+  add_column(type, "utime", &RequestId::utime, "(N,) int64, us: of the message.");
+  add_column(type, "session_id", &RequestId::session_id, "(N,) int64.");
+  add_column(type, "seq", &RequestId::seq, "(N,) int64: equal for the bodies of one message.");
+}
+
+template <typename View>
+std::unique_ptr<View> view_of(const py::object& log) {
+  instance_of<Log>(log);
+  return std::make_unique<View>(View{log});
 }
 
 py::dict to_dict(const SequenceGaps& gaps) {
@@ -231,13 +202,14 @@ py::dict to_dict(const SequenceGaps& gaps) {
 }
 
 constexpr const char* kReadLogDoc =
-    "read_log(path, *, states_channel='BUOYANCY_STATES', wrenches_channel='BUOYANCY_WRENCHES')\n--\n\n"
-    "The poses and wrenches that a file holds: a Log.\n\n"
-    "path: an .lcmlog of lcm-logger or buoyancy-replay, or a .csv of buoyancy-replay, poses or wrenches. "
-    "What is corrupt\n"
-    "is skipped and listed in Log.corrupt_sections. Raises InputError for a file that cannot be read, and "
-    "for a\n"
-    "CSV file with another header.";
+    R"(read_log(path, *, states_channel='BUOYANCY_STATES', wrenches_channel='BUOYANCY_WRENCHES')
+--
+
+The poses and wrenches that a file holds: a Log.
+
+path: an .lcmlog of lcm-logger or buoyancy-replay, or a .csv of buoyancy-replay, poses or wrenches. What
+is corrupt is skipped and listed in Log.corrupt_sections. Raises InputError for a file that cannot be
+read, and for a CSV file with another header.)";
 
 }  // namespace
 
@@ -245,58 +217,45 @@ void define_log(py::module_& module) {
   py::class_<StatesView> states(
       module, "RecordedStates",
       "The states of a Log: one row per body of every request, in the order of the file.");
-  add_common_columns(states, &Log::states);
-  add_column(states, "lead_time", &Log::states, &Columns::lead_time, 1, "(N,), s.");
-  add_column(states, "position", &Log::states, &Columns::position, 3, "(N, 3), m, world frame.");
-  add_column(states, "quaternion", &Log::states, &Columns::quaternion, 4, "(N, 4), (w, x, y, z).");
-  add_column(states, "linear_velocity", &Log::states, &Columns::linear_velocity, 3, "(N, 3), m/s.");
-  add_column(states, "angular_velocity", &Log::states, &Columns::angular_velocity, 3, "(N, 3), rad/s.");
+  add_common_columns(states);
+  add_column(states, "body_id", &BodyState::body_id, "(N,) int32.");
+  add_column(states, "lead_time", &StateRow::lead_time, "(N,), s.");
+  add_column(states, "position", &BodyState::position, "(N, 3), m, world frame.");
+  add_column(states, "quaternion", &BodyState::quaternion_wxyz, "(N, 4), (w, x, y, z).");
+  add_column(states, "linear_velocity", &BodyState::linear_velocity, "(N, 3), m/s.");
+  add_column(states, "angular_velocity", &BodyState::angular_velocity, "(N, 3), rad/s.");
   py::class_<WrenchesView> wrenches(
       module, "RecordedWrenches",
       "The wrenches of a Log: one row per body of every response, in the order of the file.");
-  add_common_columns(wrenches, &Log::wrenches);
-  add_column(wrenches, "status", &Log::wrenches, &Columns::status, 1, "(N,) int32: see Status.");
-  add_column(wrenches, "force", &Log::wrenches, &Columns::force, 3, "(N, 3), N.");
-  add_column(wrenches, "torque", &Log::wrenches, &Columns::torque, 3, "(N, 3), N m.");
-  add_column(wrenches, "volume", &Log::wrenches, &Columns::volume, 1, "(N,), m^3.");
-  add_column(wrenches, "center_of_buoyancy", &Log::wrenches, &Columns::center_of_buoyancy, 3,
+  add_common_columns(wrenches);
+  add_column(wrenches, "body_id", &BodyWrench::body_id, "(N,) int32.");
+  add_column(wrenches, "status", &BodyWrench::status, "(N,) int32: see Status.");
+  add_column(wrenches, "force", &BodyWrench::force, "(N, 3), N.");
+  add_column(wrenches, "torque", &BodyWrench::torque, "(N, 3), N m.");
+  add_column(wrenches, "volume", &BodyWrench::submerged_volume, "(N,), m^3.");
+  add_column(wrenches, "center_of_buoyancy", &BodyWrench::center_of_buoyancy,
              "(N, 3), m, relative to the position.");
-  add_column(wrenches, "force_error_bound", &Log::wrenches, &Columns::force_error_bound, 1, "(N,), N.");
-  add_column(wrenches, "torque_error_bound", &Log::wrenches, &Columns::torque_error_bound, 1, "(N,), N m.");
+  add_column(wrenches, "force_error_bound", &BodyWrench::force_error_bound, "(N,), N.");
+  add_column(wrenches, "torque_error_bound", &BodyWrench::torque_error_bound, "(N,), N m.");
 
   py::class_<Log> log(module, "Log", "What read_log() found in a file.");
-  log.def_property_readonly(
-      "states",
-      [](const py::object& self) {
-        instance_of<Log>(self);
-        return std::make_unique<StatesView>(StatesView{self});
-      },
-      "RecordedStates.");
-  log.def_property_readonly(
-      "wrenches",
-      [](const py::object& self) {
-        instance_of<Log>(self);
-        return std::make_unique<WrenchesView>(WrenchesView{self});
-      },
-      "RecordedWrenches.");
-  log.def_property_readonly(
-      "corrupt_sections",
-      [](py::handle self) { return py::tuple(py::cast(instance_of<Log>(self).corrupt_sections)); },
+  log.def_property_readonly("states", &view_of<StatesView>, "RecordedStates.");
+  log.def_property_readonly("wrenches", &view_of<WrenchesView>, "RecordedWrenches.");
+  add_property(
+      log, "corrupt_sections", [](const Log& read) { return py::tuple(py::cast(read.corrupt_sections)); },
       "tuple of str: what could not be read, and where.");
-  log.def_property_readonly(
-      "missing_requests", [](py::handle self) { return to_dict(instance_of<Log>(self).requests); },
+  add_property(
+      log, "missing_requests", [](const Log& read) { return to_dict(read.requests); },
       "dict: for each session that lacks requests between its first and last one, a list of (first, last) "
       "seq.");
-  log.def_property_readonly(
-      "missing_responses", [](py::handle self) { return to_dict(instance_of<Log>(self).responses); },
-      "dict: likewise.");
-  log.def_property_readonly(
-      "rejected", [](py::handle self) { return instance_of<Log>(self).rejected; },
-      "int: messages on the two channels that are of another type, or damaged.");
+  add_property(
+      log, "missing_responses", [](const Log& read) { return to_dict(read.responses); }, "dict: likewise.");
+  add_property(log, "rejected", &Log::rejected,
+               "int: messages on the two channels that are of another type, or damaged.");
   log.def("__repr__", [](py::handle self) {
     const Log& read = instance_of<Log>(self);
-    return "<buoyancy.Log: " + std::to_string(read.states.utime.size()) + " states, " +
-           std::to_string(read.wrenches.utime.size()) + " wrenches, " +
+    return "<buoyancy.Log: " + std::to_string(read.states.size()) + " states, " +
+           std::to_string(read.wrenches.size()) + " wrenches, " +
            std::to_string(read.corrupt_sections.size()) + " corrupt sections>";
   });
   module.def("read_log", &read_log, py::arg("path"), py::kw_only(),

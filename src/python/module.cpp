@@ -3,9 +3,8 @@
 #include "python/module.h"
 
 #include "python/exceptions.h"
-#include "python/number_array.h"
 #include "python/query_water.h"
-#include "python/result_array.h"
+#include "python/status.h"
 #include "python/wrenches.h"
 
 namespace buoyancy::python {
@@ -22,10 +21,8 @@ PYBIND11_MODULE(_core, module) {
   using namespace buoyancy::python;
   py::options options;
   options.disable_function_signatures();
-  look_for_numpy();
   define_exceptions(module);
   define_status(module);
-  define_array_view(module);
   define_wrenches(module);
   define_sea(module);
   define_mesh(module);

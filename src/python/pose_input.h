@@ -1,16 +1,20 @@
 // The poses, velocities and times that a Python caller passes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "python/number_array.h"
+#include "python/arrays.h"
 #include "query/pose_arrays.h"
 
 namespace buoyancy::python {
 
-// Times in seconds as the utimes of messages [us], rounded to the nearest: none for None, one for a number, K
-// for (K,); many: is it (K,)? Throws a ValueError for times that no utime can hold, such as NaN.
+// Times in seconds as the utimes of messages [us], rounded to the nearest. Throws a ValueError for times that
+// no utime can hold, such as NaN.
+std::vector<std::int64_t> to_utimes(std::span<const double> seconds);
+// None for None, one for a number, K for (K,); many: is it (K,)?
 std::vector<std::int64_t> to_utimes(PyObject* time, bool& many);
 
 struct PoseObjects {
@@ -26,6 +30,8 @@ class PoseInput {
  public:
   // Throws a TypeError or ValueError that names the argument at fault.
   explicit PoseInput(const PoseObjects& objects);
+  PoseInput(const PoseInput&) = delete;
+  PoseInput& operator=(const PoseInput&) = delete;
 
   std::size_t size() const { return size_; }
   bool single() const { return single_; }  // neither argument has a dimension of poses
@@ -34,16 +40,18 @@ class PoseInput {
  private:
   // One row per pose of an argument with this many columns.
   struct Rows {
-    NumberArray<double> array;
-    std::vector<double> repeated;
-    bool is_repeated = false;  // also for no pose at all, when `repeated` is empty
     const char* name;
-    Py_ssize_t columns;
+    std::span<const double> values;  // of the array, or repeated
+    bool has_poses = false;          // (K, columns), rather than (columns,)
+    std::size_t poses = 1;
+    std::vector<double> repeated;
+    py::object array;
+    // Numpy does not resize an array that one refers to, whereas it ignores the buffers that it has exported.
+    py::object weak_reference;
 
-    Rows(PyObject* object, const char* name, Py_ssize_t columns);
-    bool has_poses() const { return array.dimensions() == 2; }
-    void fit(std::size_t poses, bool single);  // repeats one row for all poses
-    std::span<const double> values() const { return is_repeated ? std::span(repeated) : array.values(); }
+    // No values where object is nullptr.
+    Rows(PyObject* object, const char* name, py::ssize_t columns);
+    void fit(std::size_t poses);  // repeats one row for all poses
   };
 
   Rows position_, quaternion_, linear_velocity_, angular_velocity_;

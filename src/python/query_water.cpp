@@ -1,26 +1,23 @@
 #include "python/query_water.h"
 
+#include <string>
+
 #include "base/format.h"
 #include "base/number_range.h"
-#include "python/call_arguments.h"
-#include "python/number_array.h"
+#include "python/arrays.h"
 
 namespace buoyancy::python {
 namespace {
 
 double in_range(PyObject* object, const char* name, const NumberRange& range, double default_value) {
   if (object == nullptr) return default_value;
-  const double value = to_double(object, name);
+  const double value = to_number<double>(object, name);
   if (range.contains(value)) return value;
   throw InputException({"the water", name + (" = " + format_shortest(value)), range.describe(), "", ""});
 }
 
 Vec3 to_up(PyObject* object) {
-  const NumberArray<double> up(object, "up");
-  if (!up.has_shape({3})) {
-    throw py::value_error("up has shape " + shape_text(up.shape()) + "; expected (3,), a direction");
-  }
-  const Vec3 up_W(up.values()[0], up.values()[1], up.values()[2]);
+  const Vec3 up_W = to_vector(object, "up", "(3,), a direction");
   const double largest = up_W.cwiseAbs().maxCoeff();
   if (!up_W.allFinite() || largest == 0.0) {
     throw InputException({"the water", "up = " + format_vector(up_W),
@@ -49,20 +46,21 @@ QueryWater to_query_water(const WaterObjects& objects, PyObject* sea) {
   }
   const QuerySea& of_sea = instance_of<SeaObject>(sea).sea;
   const Water defaults;
-  const auto check = [](const char* name, double given, double of_water, double default_value) {
-    if (given == of_water || given == default_value) return;
-    throw py::value_error(std::string(name) + " = " + format_shortest(given) + " but the sea's is " +
-                          format_shortest(of_water) + "; expected one of them: leave " + name +
-                          " out, or give it to the Sea");
+  const auto refuse = [](const std::string& name, const std::string& given, const std::string& of_water) {
+    throw py::value_error(name + " = " + given + " but the sea's is " + of_water +
+                          "; expected one of them: leave " + name + " out, or give it to the Sea");
   };
-  check("level", water.level, of_sea.water().level, defaults.level);
-  check("density", water.density, of_sea.water().density, defaults.density);
-  check("gravity", water.gravity, of_sea.water().gravity, defaults.gravity);
+  const auto check = [&](const char* name, double Water::*member) {
+    const double given = water.*member;
+    const double of_water = of_sea.water().*member;
+    if (given == of_water || given == defaults.*member) return;
+    refuse(name, format_shortest(given), format_shortest(of_water));
+  };
+  check("level", &Water::level);
+  check("density", &Water::density);
+  check("gravity", &Water::gravity);
   if (!of_sea.has_up(water.up_W) && water.up_W != defaults.up_W) {
-    throw py::value_error("up = " + format_vector(water.up_W) + " but the sea's is " +
-                          format_vector(of_sea.water().up_W) +
-                          "; expected one of them: leave up out, or give it to "
-                          "the Sea");
+    refuse("up", format_vector(water.up_W), format_vector(of_sea.water().up_W));
   }
   return water_of(of_sea);
 }

@@ -1,11 +1,9 @@
 // The water of a query of a mesh: numbers, or a sea.
 #pragma once
 
-#include <memory>
-#include <string>
+#include <pybind11/eigen.h>
 
-#include <pybind11/pybind11.h>
-
+#include "python/call_arguments.h"
 #include "query/pose_evaluation.h"
 #include "query/query_sea.h"
 
@@ -33,6 +31,19 @@ Water to_water(const WaterObjects& objects);
 // The water of `sea`, or of the numbers where there is none. Throws a ValueError if both are given and
 // differ.
 QueryWater to_query_water(const WaterObjects& objects, PyObject* sea);
+
+// Adds the properties of the water that a function of the object returns.
+template <typename T, typename WaterOf>
+void add_water_properties(py::class_<T>& type, WaterOf water) {
+  const auto add = [&](const char* name, auto Water::*member, const char* doc) {
+    add_property(
+        type, name, [=](const T& object) { return water(object).*member; }, doc);
+  };
+  add("level", &Water::level, "float, m: the surface at rest is where up . x = level.");
+  add("density", &Water::density, "float, kg/m^3.");
+  add("gravity", &Water::gravity, "float, m/s^2.");
+  add("up", &Water::up_W, "(3,): unit vector, world frame.");
+}
 
 void define_sea(py::module_& module);
 

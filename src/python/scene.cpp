@@ -1,19 +1,20 @@
 // buoyancy.Scene: the bodies of a scene file, and queries of them.
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
 #include "base/format.h"
+#include "python/arrays.h"
 #include "python/call_arguments.h"
 #include "python/module.h"
-#include "python/number_array.h"
 #include "python/pose_input.h"
 #include "python/query_water.h"
-#include "python/result_array.h"
 #include "python/scene_object.h"
 #include "python/wrenches.h"
 #include "scene/mesh_warnings.h"
@@ -27,129 +28,105 @@ struct BodyObject {
   const Body* body;
 };
 
-std::shared_ptr<const Scene> prepare(const Expected<SceneDescription>& description) {
-  if (!description) throw InputException(description.error());
-  return std::make_shared<const Scene>(value_or_throw(Scene::prepare(*description)));
-}
-
-std::unique_ptr<SceneObject> with_warnings(std::shared_ptr<const Scene> scene) {
-  for (const Warning& warning : mesh_warnings(*scene)) warn(warning);
-  return std::make_unique<SceneObject>(SceneObject{std::move(scene)});
-}
-
-std::unique_ptr<SceneObject> load(const py::object& file) {
-  const std::string path = to_path(file);
+// Reads and prepares a scene without the interpreter's lock, and warns of its meshes.
+template <typename Read>
+std::shared_ptr<const Scene> prepare(const Read& read) {
   std::shared_ptr<const Scene> scene;
   {
     const WithoutGil released;
-    scene = prepare(read_scene_file(path));
+    scene = std::make_shared<const Scene>(value_or_throw(Scene::prepare(value_or_throw(read()))));
   }
-  return with_warnings(std::move(scene));
+  for (const Warning& warning : mesh_warnings(*scene)) warn(warning);
+  return scene;
 }
 
 std::unique_ptr<SceneObject> parse(const std::string& text, const py::object& directory) {
   const std::string folder = directory.is_none() ? std::string() : to_path(directory);
-  std::shared_ptr<const Scene> scene;
-  {
-    const WithoutGil released;
-    scene = prepare(parse_scene(text, "Scene.from_text()", folder));
+  return std::make_unique<SceneObject>(
+      SceneObject{prepare([&] { return parse_scene(text, "Scene.from_text()", folder); })});
+}
+
+constexpr Parameters<9> kQueryParameters{
+    "body_id", "position", "quaternion", "linear_velocity", "angular_velocity", "time",
+    "threads", "out",      "sea"};
+
+py::object query(PyObject* self, const Arguments<9>& arguments) {
+  const auto& [body_id, position, quaternion, linear, angular, time, threads, out, sea] = arguments;
+  const std::shared_ptr<const Scene> scene = instance_of<SceneObject>(self).scene;
+  const Body& body = find_body(*scene, body_id);
+  QueryWater water = water_of(*scene);
+  if (is_given(sea)) {
+    water = water_of(instance_of<SeaObject>(sea).sea);
+    if (water.current_W != scene->current_W()) {
+      throw InputException({"sea", "a current of [" + format_vector(water.current_W) + "] m/s",
+                            "the scene's, [" + format_vector(scene->current_W()) + "] m/s", "",
+                            "Give both the same velocity below [water.current]"});
+    }
+    if (water.waves != nullptr && !body.prepared_mesh->wave_mesh) {
+      throw InputException({"sea", "waves, with a scene in water at rest",
+                            "a scene that is prepared for waves", "",
+                            "Write waves = \"received\" below [water] of the scene"});
+    }
   }
-  return with_warnings(std::move(scene));
+  const PoseInput poses({position, quaternion, linear, angular, time});
+  return evaluate(body, water, poses, body.loads, to_threads(threads), out);
 }
 
-PyObject* query(PyObject* self, PyObject* const* arguments, Py_ssize_t count, PyObject* keywords) {
-  static const Signature<9> signature("query", 3, 3,
-                                      {"body_id", "position", "quaternion", "linear_velocity",
-                                       "angular_velocity", "time", "threads", "out", "sea"});
-  return guarded([&]() -> py::object {
-    const auto [body_id, position, quaternion, linear, angular, time, threads, out, sea] =
-        signature.parse(arguments, count, keywords);
-    const std::shared_ptr<const Scene> scene = instance_of<SceneObject>(self).scene;
-    const Body& body = find_body(*scene, body_id);
-    QueryWater water = water_of(*scene);
-    if (is_given(sea)) {
-      water = water_of(instance_of<SeaObject>(sea).sea);
-      if (water.current_W != scene->current_W()) {
-        throw InputException({"sea", "a current of [" + format_vector(water.current_W) + "] m/s",
-                              "the scene's, [" + format_vector(scene->current_W()) + "] m/s", "",
-                              "Give both the same velocity below [water.current]"});
-      }
-      if (water.waves != nullptr && !body.prepared_mesh->wave_mesh) {
-        throw InputException({"sea", "waves, with a scene in water at rest",
-                              "a scene that is prepared for waves", "",
-                              "Write waves = \"received\" below [water] of the scene"});
-      }
-    }
-    const PoseInput poses({position, quaternion, linear, angular, time});
-    return evaluate(body, water, poses, body.loads, to_threads(threads), out);
-  });
-}
+constexpr Parameters<4> kHydrostaticsParameters{"body_id", "position", "quaternion", "threads"};
 
-PyObject* hydrostatics(PyObject* self, PyObject* const* arguments, Py_ssize_t count, PyObject* keywords) {
-  static const Signature<4> signature("hydrostatics", 3, 3, {"body_id", "position", "quaternion", "threads"});
-  return guarded([&]() -> py::object {
-    const auto [body_id, position, quaternion, threads] = signature.parse(arguments, count, keywords);
-    const std::shared_ptr<const Scene> scene = instance_of<SceneObject>(self).scene;
-    const Body& body = find_body(*scene, body_id);
-    if (!body.solver.mesh().tree) {
-      throw InputException({"body " + std::to_string(body.id), "no hydrostatics",
-                            "a body that is prepared for them", "its method needs no tree of moments",
-                            "Add \"hydrostatics\" to its outputs in the scene"});
-    }
-    const PoseInput poses({.position = position, .quaternion = quaternion});
-    return evaluate_hydrostatics(body, scene->water(), poses, to_threads(threads));
-  });
+py::object hydrostatics(PyObject* self, const Arguments<4>& arguments) {
+  const auto& [body_id, position, quaternion, threads] = arguments;
+  const std::shared_ptr<const Scene> scene = instance_of<SceneObject>(self).scene;
+  const Body& body = find_body(*scene, body_id);
+  if (!body.solver.mesh().tree) {
+    throw InputException({"body " + std::to_string(body.id), "no hydrostatics",
+                          "a body that is prepared for them", "its method needs no tree of moments",
+                          "Add \"hydrostatics\" to its outputs in the scene"});
+  }
+  const PoseInput poses({.position = position, .quaternion = quaternion});
+  return evaluate_hydrostatics(body, scene->water(), poses, to_threads(threads));
 }
 
 constexpr const char* kQueryDoc =
-    "query($self, body_id, position, quaternion, *, linear_velocity=None, angular_velocity=None, time=0.0,\n"
-    "      threads=0, out=None, sea=None)\n--\n\n"
-    "The wrench on a body of the scene, at one pose or at K poses, in the scene's water: a Wrenches.\n\n"
-    "body_id: int, or the body's name. position, quaternion, time, threads, out: see Mesh.query().\n"
-    "linear_velocity, angular_velocity: (3,) or (K, 3), m/s of the body's origin and rad/s, world frame; "
-    "None: at rest.\n"
-    "Only bodies with drag or added mass depend on them. sea: a Sea instead of the scene's water; a scene "
-    "with\n"
-    "waves = \"received\" needs it, since all poses have the status NO_SEA otherwise.\n\n"
-    "The wrench has the bits of the service's response to the same pose, with method, tolerance and "
-    "reference point\n"
-    "of the scene. result.loads holds drag and added mass apart, if \"loads\" is among the body's "
-    "outputs.\n\n"
-    "Raises KeyError for a body that the scene does not have, else as Mesh.query().";
+    R"(query($self, body_id, position, quaternion, *, linear_velocity=None, angular_velocity=None, time=0.0,
+      threads=0, out=None, sea=None)
+--
+
+The wrench on a body of the scene, at one pose or at K poses, in the scene's water: a Wrenches.
+
+body_id: int, or the body's name. position, quaternion, time, threads, out: see Mesh.query().
+linear_velocity, angular_velocity: (3,) or (K, 3), m/s of the body's origin and rad/s, world frame; None:
+at rest. Only bodies with drag or added mass depend on them. sea: a Sea instead of the scene's water; a
+scene with waves = "received" needs it, since all poses have the status NO_SEA otherwise.
+
+The wrench has the bits of the service's response to the same pose, with method, tolerance and reference
+point of the scene. result.loads holds drag and added mass apart, if "loads" is among the body's outputs.
+
+Raises KeyError for a body that the scene does not have, else as Mesh.query().)";
 
 constexpr const char* kHydrostaticsDoc =
-    "hydrostatics($self, body_id, position, quaternion, *, threads=0)\n--\n\n"
-    "Waterplane, metacentres and stiffness of a body, in the scene's water at rest: a Hydrostatics.\n\n"
-    "Metacentric heights belong to the centre of mass of [body.client]. Arguments: see query().";
+    R"(hydrostatics($self, body_id, position, quaternion, *, threads=0)
+--
 
-PyMethodDef query_method{"query", reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&query)),
-                         METH_FASTCALL | METH_KEYWORDS, kQueryDoc};
-PyMethodDef hydrostatics_method{"hydrostatics",
-                                reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(&hydrostatics)),
-                                METH_FASTCALL | METH_KEYWORDS, kHydrostaticsDoc};
+Waterplane, metacentres and stiffness of a body, in the scene's water at rest: a Hydrostatics.
+
+Metacentric heights belong to the centre of mass of [body.client]. Arguments: see query().)";
 
 constexpr const char* kSceneDoc =
-    "The water and the bodies of a scene file, prepared for queries (docs/scene_file.md).\n\n"
-    "Scene(path) reads a file; Scene.from_text(text, directory=None) takes its text. One scene may be "
-    "queried by several\n"
-    "threads at once.\n\nRaises InputError with the file, the line and the key at fault.";
+    R"(The water and the bodies of a scene file, prepared for queries (docs/scene_file.md).
 
-const Body& body_of(py::handle self) {
-  return *instance_of<BodyObject>(self).body;
-}
+Scene(path) reads a file; Scene.from_text(text, directory=None) takes its text. One scene may be queried
+by several threads at once.
 
-py::object vector(const Vec3& value) {
-  return make_owned_array({3}, {value.x(), value.y(), value.z()});
-}
+Raises InputError with the file, the line and the key at fault.)";
 
 void define_body(py::module_& module) {
   py::class_<BodyObject> type(module, "Body", "A body of a scene.");
   const auto add = [&type](const char* name, auto value, const char* doc) {
-    type.def_property_readonly(
-        name, [value](py::handle self) { return value(body_of(self)); }, doc);
+    add_property(
+        type, name, [value](const BodyObject& object) { return std::invoke(value, *object.body); }, doc);
   };
-  add(
-      "id", [](const Body& body) { return body.id; }, "int.");
+  add("id", &Body::id, "int.");
   add(
       "name", [](const Body& body) { return to_str(body.name); }, "str.");
   add(
@@ -163,16 +140,8 @@ void define_body(py::module_& module) {
   add(
       "report", [](const Body& body) { return to_str(to_text(body.prepared_mesh->report)); },
       "str: the report of its mesh.");
-  add(
-      "reference_point", [](const Body& body) { return vector(body.reference_B); },
-      "(3,), m, body frame: torques are about it.");
-  add(
-      "center_of_mass",
-      [](const Body& body) -> py::object {
-        if (!body.center_of_mass_B) return py::none();
-        return vector(*body.center_of_mass_B);
-      },
-      "(3,), m, body frame, from [body.client], else None.");
+  add("reference_point", &Body::reference_B, "(3,), m, body frame: torques are about it.");
+  add("center_of_mass", &Body::center_of_mass_B, "(3,), m, body frame, from [body.client], else None.");
   add(
       "outputs",
       [](const Body& body) {
@@ -183,22 +152,27 @@ void define_body(py::module_& module) {
       },
       "tuple of str, as in the scene file.");
   add(
-      "position", [](const Body& body) { return vector(body.dynamics.position); },
+      "position", [](const Body& body) { return body.dynamics.position; },
       "(3,), m: where [body.client] places it.");
   add(
       "quaternion",
       [](const Body& body) {
         const Eigen::Quaterniond& q = body.dynamics.orientation;
-        return make_owned_array({4}, {q.w(), q.x(), q.y(), q.z()});
+        return Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
       },
       "(4,), (w, x, y, z): the orientation of [body.client].");
   type.def("__repr__", [](py::handle self) {
-    const Body& body = body_of(self);
+    const Body& body = *instance_of<BodyObject>(self).body;
     return to_str("<buoyancy.Body " + std::to_string(body.id) + " \"" + body.name + "\">");
   });
 }
 
 }  // namespace
+
+std::shared_ptr<const Scene> load_scene(py::handle file) {
+  const std::string path = to_path(file);
+  return prepare([&] { return read_scene_file(path); });
+}
 
 const Body& find_body(const Scene& scene, py::handle id) {
   std::string ids;
@@ -208,11 +182,7 @@ const Body& find_body(const Scene& scene, py::handle id) {
       if (body.name == name) return body;
     }
   } else {
-    const NumberArray<std::int64_t> number(id.ptr(), "body_id");
-    if (number.dimensions() != 0) {
-      throw py::type_error("body_id has shape " + shape_text(number.shape()) + "; expected one id or name");
-    }
-    const std::int64_t value = number.values()[0];
+    const auto value = to_number<std::int64_t>(id.ptr(), "body_id");
     const Body* const body =
         value == static_cast<std::int32_t>(value) ? scene.find(static_cast<std::int32_t>(value)) : nullptr;
     if (body != nullptr) return *body;
@@ -230,17 +200,20 @@ const Body& find_body(const Scene& scene, py::handle id) {
 void define_scene(py::module_& module) {
   define_body(module);
   py::class_<SceneObject> type(module, "Scene", kSceneDoc);
-  type.def(py::init(&load), py::arg("path"));
-  type.def_static(
-      "from_text", &parse, py::arg("text"), py::arg("directory") = py::none(),
-      "from_text(text, directory=None)\n--\n\nA scene from the text of a scene file. directory: where its "
-      "relative paths begin.");
-  add_method(type, query_method);
-  add_method(type, hydrostatics_method);
-  type.def_property_readonly(
-      "bodies",
-      [](py::handle self) {
-        const std::shared_ptr<const Scene>& scene = instance_of<SceneObject>(self).scene;
+  type.def(
+      py::init([](py::handle path) { return std::make_unique<SceneObject>(SceneObject{load_scene(path)}); }),
+      py::arg("path"));
+  type.def_static("from_text", &parse, py::arg("text"), py::arg("directory") = py::none(),
+                  R"(from_text(text, directory=None)
+--
+
+A scene from the text of a scene file. directory: where its relative paths begin.)");
+  add_method<&query>(type, "query", 3, kQueryParameters, kQueryDoc);
+  add_method<&hydrostatics>(type, "hydrostatics", 3, kHydrostaticsParameters, kHydrostaticsDoc);
+  add_property(
+      type, "bodies",
+      [](const SceneObject& object) {
+        const std::shared_ptr<const Scene>& scene = object.scene;
         py::tuple bodies(scene->bodies().size());
         for (std::size_t i = 0; i < scene->bodies().size(); ++i) {
           bodies[i] = py::cast(std::make_unique<BodyObject>(BodyObject{scene, &scene->bodies()[i]}));
@@ -248,26 +221,15 @@ void define_scene(py::module_& module) {
         return bodies;
       },
       "tuple of Body, in the order of the file.");
-  type.def_property_readonly(
-      "name", [](py::handle self) { return instance_of<SceneObject>(self).scene->name(); }, "str: the file.");
-  type.def_property_readonly(
-      "has_waves",
-      [](py::handle self) {
-        const Scene& scene = *instance_of<SceneObject>(self).scene;
-        return scene.sea() != nullptr || scene.receives_sea();
+  add_property(
+      type, "name", [](const SceneObject& object) { return object.scene->name(); }, "str: the file.");
+  add_property(
+      type, "has_waves",
+      [](const SceneObject& object) {
+        return object.scene->sea() != nullptr || object.scene->receives_sea();
       },
       "bool: are there waves, here or in messages?");
-  const auto water_number = [&type](const char* name, double Water::*member, const char* doc) {
-    type.def_property_readonly(
-        name, [member](py::handle self) { return instance_of<SceneObject>(self).scene->water().*member; },
-        doc);
-  };
-  water_number("level", &Water::level, "float, m.");
-  water_number("density", &Water::density, "float, kg/m^3.");
-  water_number("gravity", &Water::gravity, "float, m/s^2.");
-  type.def_property_readonly(
-      "up", [](py::handle self) { return vector(instance_of<SceneObject>(self).scene->water().up_W); },
-      "(3,): unit vector, world frame.");
+  add_water_properties(type, [](const SceneObject& object) { return object.scene->water(); });
   type.def("__repr__", [](py::handle self) {
     const Scene& scene = *instance_of<SceneObject>(self).scene;
     return to_str("<buoyancy.Scene " + scene.name() + ": " +

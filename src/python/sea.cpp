@@ -1,84 +1,34 @@
 // buoyancy.Sea: the water and its waves, and their motion at many points.
 
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "python/arrays.h"
 #include "python/call_arguments.h"
-#include "python/number_array.h"
 #include "python/pose_input.h"
 #include "python/query_water.h"
-#include "python/result_array.h"
 #include "python/slices.h"
-#include "python/toml_text.h"
 #include "python/wrenches.h"
 #include "scene/scene_file.h"
 
 namespace buoyancy::python {
 namespace {
 
-// Several arrays as one shape, by numpy's rules: missing dimensions come first, and those of 1 are repeated.
-class Broadcast {
- public:
-  void add(const NumberArray<double>& array, const char* name) {
-    const auto dimensions = static_cast<std::size_t>(array.dimensions());
-    if (dimensions > shape_.size()) shape_.insert(shape_.begin(), dimensions - shape_.size(), 1);
-    const std::size_t first = shape_.size() - dimensions;
-    for (std::size_t i = 0; i < dimensions; ++i) {
-      Py_ssize_t& known = shape_[first + i];
-      const Py_ssize_t extent = array.shape()[i];
-      if (known == extent || extent == 1) continue;
-      if (known != 1) {
-        throw py::value_error(std::string(name) + " has shape " + shape_text(array.shape()) +
-                              ", which does not fit " + shape_text(shape_) + " of the arguments before it");
-      }
-      known = extent;
-    }
-  }
-
-  const std::vector<Py_ssize_t>& shape() const { return shape_; }
-  std::size_t size() const {
-    std::size_t product = 1;
-    for (const Py_ssize_t extent : shape_) product *= static_cast<std::size_t>(extent);
-    return product;
-  }
-
-  // The numbers of an array that was added, at every element of the shape.
-  std::vector<double> expand(const NumberArray<double>& array) const {
-    std::vector<double> values(size());
-    std::vector<Py_ssize_t> strides(shape_.size(), 0);
-    Py_ssize_t stride = 1;
-    for (int i = array.dimensions(); i-- > 0;) {
-      const std::size_t to = shape_.size() - static_cast<std::size_t>(array.dimensions() - i);
-      strides[to] = array.extent(i) == 1 ? 0 : stride;
-      stride *= array.extent(i);
-    }
-    std::vector<Py_ssize_t> index(shape_.size(), 0);
-    Py_ssize_t offset = 0;
-    for (double& value : values) {
-      value = array.values()[static_cast<std::size_t>(offset)];
-      for (std::size_t i = shape_.size(); i-- > 0;) {
-        offset += strides[i];
-        if (++index[i] < shape_[i]) break;
-        offset -= strides[i] * shape_[i];
-        index[i] = 0;
-      }
-    }
-    return values;
-  }
-
- private:
-  std::vector<Py_ssize_t> shape_;
-};
-
-// Points and times as contiguous columns of one shape.
+// Points and times of one shape, by numpy's rules of broadcasting.
 struct Points {
-  std::vector<std::vector<double>> columns;
-  std::vector<std::int64_t> utimes;  // one, or one per point
-  std::vector<Py_ssize_t> shape;
+  std::vector<std::vector<double>> columns;  // x, y and perhaps z
+  std::vector<std::int64_t> utimes;          // one, or one per point
+  std::vector<py::ssize_t> shape;
   std::size_t size = 0;
 
   std::span<const std::int64_t> times(std::size_t begin, std::size_t end) const {
@@ -87,67 +37,85 @@ struct Points {
   }
 };
 
-Points to_points(std::initializer_list<std::pair<const char*, py::handle>> coordinates, py::handle time) {
-  Broadcast broadcast;
-  std::vector<std::unique_ptr<NumberArray<double>>> arrays;
+Points to_points(std::initializer_list<std::pair<const char*, py::handle>> coordinates) {
+  const py::module_ numpy = py::module_::import("numpy");
+  std::vector<Numbers<double>> arrays;
+  py::tuple shape;
   for (const auto& [name, object] : coordinates) {
-    arrays.push_back(std::make_unique<NumberArray<double>>(object.ptr(), name));
-    broadcast.add(*arrays.back(), name);
+    arrays.push_back(to_numbers<double>(object.ptr(), name));
+    const py::tuple own_shape = arrays.back().attr("shape");
+    if (own_shape.equal(shape)) continue;
+    try {
+      shape = numpy.attr("broadcast_shapes")(shape, own_shape);
+    } catch (const py::error_already_set& error) {
+      if (!error.matches(PyExc_ValueError)) throw;
+      throw py::value_error(std::string(name) + " has shape " + std::string(py::repr(own_shape)) +
+                            ", which does not fit " + std::string(py::repr(shape)) +
+                            " of the arguments before it");
+    }
   }
-  const NumberArray<double> times(time.ptr(), "t");
-  broadcast.add(times, "t");
+  const auto spread = [&](const Numbers<double>& array) {
+    const py::object own_shape = array.attr("shape");
+    return own_shape.equal(shape) ? array : Numbers<double>(numpy.attr("broadcast_to")(array, shape));
+  };
   Points points;
-  for (const auto& array : arrays) points.columns.push_back(broadcast.expand(*array));
-  bool many = false;
-  if (times.values().size() == 1) {
-    points.utimes = to_utimes(py::float_(times.values()[0]).ptr(), many);
-  } else {
-    points.utimes = to_utimes(
-        make_owned_array({static_cast<Py_ssize_t>(broadcast.size())}, broadcast.expand(times)).ptr(), many);
+  // The last coordinate is the time. A single one remains one, which is quicker by far.
+  const Numbers<double> times = arrays.back();
+  arrays.pop_back();
+  points.utimes = to_utimes(values_of(times.size() == 1 ? times : spread(times)));
+  for (const Numbers<double>& array : arrays) {
+    const Numbers<double> column = spread(array);
+    points.columns.emplace_back(column.data(), column.data() + column.size());
+    points.shape.assign(column.shape(), column.shape() + column.ndim());
   }
-  points.shape = broadcast.shape();
-  points.size = broadcast.size();
+  points.size = points.columns.front().size();
   return points;
+}
+
+// The array of what evaluate(begin, end, out) sets for the points in [begin, end): width numbers per point.
+template <typename Evaluate>
+py::object at_points(const Points& points, std::size_t width, const Evaluate& evaluate) {
+  std::vector<py::ssize_t> shape = points.shape;
+  if (width > 1) shape.push_back(static_cast<py::ssize_t>(width));
+  py::array_t<double> array(shape);
+  const std::span<double> values(array.mutable_data(), width * points.size);
+  run_in_slices(points.size, [&](std::size_t begin, std::size_t end) {
+    evaluate(begin, end, values.subspan(width * begin, width * (end - begin)));
+  });
+  if (shape.empty()) return py::float_(values[0]);
+  return array;
 }
 
 py::object elevation(py::handle self, py::handle x, py::handle y, py::handle time, py::handle threads) {
   const DefaultFloatingPoint floating_point;
   const QuerySea& sea = instance_of<SeaObject>(self).sea;
   const unsigned count = to_threads(threads.ptr());
-  const Points points = to_points({{"x", x}, {"y", y}}, time);
-  std::vector<double> values(points.size);
-  run_in_slices(points.size, [&](std::size_t begin, std::size_t end) {
-    const auto part = [&](const std::vector<double>& all) {
-      return std::span(all).subspan(begin, end - begin);
-    };
-    sea_elevations(sea, part(points.columns[0]), part(points.columns[1]), points.times(begin, end),
-                   std::span(values).subspan(begin, end - begin), count);
+  const Points points = to_points({{"x", x}, {"y", y}, {"t", time}});
+  const std::span<const double> x1 = points.columns[0];
+  const std::span<const double> x2 = points.columns[1];
+  return at_points(points, 1, [&](std::size_t begin, std::size_t end, std::span<double> out) {
+    sea_elevations(sea, x1.subspan(begin, end - begin), x2.subspan(begin, end - begin),
+                   points.times(begin, end), out, count);
   });
-  if (points.shape.empty()) return py::float_(values[0]);
-  return make_owned_array(points.shape, std::move(values));
 }
 
-// wanted: the member of WaterMotionArrays; width: numbers per point.
+template <std::span<double> WaterMotionArrays::*kWanted, std::size_t kWidth>
 py::object motion(py::handle self, py::handle x, py::handle y, py::handle z, py::handle time,
-                  py::handle threads, std::span<double> WaterMotionArrays::*wanted, std::size_t width) {
+                  py::handle threads) {
   const DefaultFloatingPoint floating_point;
   const QuerySea& sea = instance_of<SeaObject>(self).sea;
   const unsigned count = to_threads(threads.ptr());
-  Points points = to_points({{"x", x}, {"y", y}, {"z", z}}, time);
+  const Points points = to_points({{"x", x}, {"y", y}, {"z", z}, {"t", time}});
   std::vector<double> at(3 * points.size);
-  for (std::size_t i = 0; i < points.size; ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) at[3 * i + axis] = points.columns[axis][i];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < points.size; ++i) at[3 * i + axis] = points.columns[axis][i];
   }
-  std::vector<double> values(width * points.size);
-  run_in_slices(points.size, [&](std::size_t begin, std::size_t end) {
-    WaterMotionArrays out;
-    out.*wanted = std::span(values).subspan(width * begin, width * (end - begin));
-    water_at_points(sea, std::span(at).subspan(3 * begin, 3 * (end - begin)), points.times(begin, end), out,
-                    count);
+  return at_points(points, kWidth, [&](std::size_t begin, std::size_t end, std::span<double> out) {
+    WaterMotionArrays wanted;
+    wanted.*kWanted = out;
+    water_at_points(sea, std::span(at).subspan(3 * begin, 3 * (end - begin)), points.times(begin, end),
+                    wanted, count);
   });
-  if (width == 1 && points.shape.empty()) return py::float_(values[0]);
-  if (width > 1) points.shape.push_back(static_cast<Py_ssize_t>(width));
-  return make_owned_array(points.shape, std::move(values));
 }
 
 QuerySea sea_of_file(const std::filesystem::path& path) {
@@ -168,93 +136,87 @@ std::unique_ptr<SeaObject> make_sea(const std::optional<std::filesystem::path>& 
   }
   std::string world = "[world]\n";
   std::string water = "[water]\n";
+  const py::object toml_line = py::module_::import("buoyancy._toml_text").attr("line");
   for (const auto& [key, value] : keys) {
     const std::string name = py::str(key);
-    (name == "gravity" || name == "up" ? world : water) += toml_line(key, value);
+    (name == "gravity" || name == "up" ? world : water) += toml_line(key, value).cast<std::string>();
   }
   return std::make_unique<SeaObject>(SeaObject{value_or_throw(QuerySea::parse(world + water, "Sea()", {}))});
 }
 
-py::object vector(const Vec3& value) {
-  return make_owned_array({3}, {value.x(), value.y(), value.z()});
-}
-
 constexpr const char* kSeaDoc =
-    "The water and its waves.\n\nSea(level=0.0, density=1025.0, gravity=9.80665, up=(0, 0, 1), depth=inf, "
-    "wave_pressure=\"wheeler\",\n    time_origin=0, ramp=0.0, waves=[...], current={\"velocity\": (0, 0, "
-    "0)}) takes the keys of the sections "
-    "[water] and "
-    "[world] of a scene\n    file, with their units, ranges and defaults (docs/scene_file.md). waves: a dict "
-    "per wave "
-    "system, or one\n    dict, such as dict(type=\"jonswap\", significant_wave_height=2.0, "
-    "peak_period=8.0).\nSea(path) "
-    "reads them from a scene file.\n\nTimes are seconds: the utime of a message over 1e6, rounded to whole "
-    "microseconds.\n\nRaises InputError with the text of the scene file's errors.";
+    R"(The water and its waves.
+
+Sea(level=0.0, density=1025.0, gravity=9.80665, up=(0, 0, 1), depth=inf, wave_pressure="wheeler",
+    time_origin=0, ramp=0.0, waves=[...], current={"velocity": (0, 0, 0)}) takes the keys of the sections
+    [water] and [world] of a scene file, with their units, ranges and defaults (docs/scene_file.md).
+    waves: a dict per wave system, or one dict, such as dict(type="jonswap",
+    significant_wave_height=2.0, peak_period=8.0).
+Sea(path) reads them from a scene file.
+
+Times are seconds: the utime of a message over 1e6, rounded to whole microseconds.
+
+Raises InputError with the text of the scene file's errors.)";
+
+constexpr const char* kElevationDoc =
+    R"(elevation($self, x, y, t, *, threads=0)
+--
+
+Height of the surface over the level in metres.
+
+x, y: metres from the world's origin along the horizontal axes (see axes; with up = z the world's x and
+y). t: seconds. All are numbers or arrays, which are broadcast as numpy does.)";
+
+constexpr const char* kVelocityDoc =
+    R"(velocity($self, x, y, z, t, *, threads=0)
+--
+
+Velocity of the water at points in the world, of current and waves, in m/s: the shape of the arguments,
+and 3.
+
+x, y, z: metres, world frame; t: seconds; broadcast as numpy does.)";
+
+constexpr const char* kAccelerationDoc =
+    R"(acceleration($self, x, y, z, t, *, threads=0)
+--
+
+Acceleration of the water at points in the world, in m/s^2, as an observer sees it who drifts with the
+current: see velocity().)";
+
+constexpr const char* kPressureDoc =
+    R"(pressure($self, x, y, z, t, *, threads=0)
+--
+
+Pressure over that of the air in Pa at points in the world, of water at rest and waves together; 0 above
+the surface. Arguments: see velocity().)";
 
 }  // namespace
 
 void define_sea(py::module_& module) {
   py::class_<SeaObject> type(module, "Sea", kSeaDoc);
   type.def(py::init(&make_sea), py::arg("path") = py::none());
-  const auto add_method = [&type](const char* name, auto function, const char* doc) {
+  type.def("elevation", &elevation, py::arg("x"), py::arg("y"), py::arg("t"), py::kw_only(),
+           py::arg("threads") = 0, kElevationDoc);
+  const auto add_motion = [&type](const char* name, auto function, const char* doc) {
     type.def(name, function, py::arg("x"), py::arg("y"), py::arg("z"), py::arg("t"), py::kw_only(),
              py::arg("threads") = 0, doc);
   };
-  type.def("elevation", &elevation, py::arg("x"), py::arg("y"), py::arg("t"), py::kw_only(),
-           py::arg("threads") = 0,
-           "elevation($self, x, y, t, *, threads=0)\n--\n\nHeight of the surface over the level in "
-           "metres.\n\nx, y: "
-           "metres from the world's origin along the horizontal axes (see axes; with up = z the world's x "
-           "and y).\nt: "
-           "seconds. All are numbers or arrays, which are broadcast as numpy does.");
-  add_method(
-      "velocity",
-      [](py::handle self, py::handle x, py::handle y, py::handle z, py::handle time, py::handle threads) {
-        return motion(self, x, y, z, time, threads, &WaterMotionArrays::velocities, 3);
-      },
-      "velocity($self, x, y, z, t, *, threads=0)\n--\n\nVelocity of the water at points in the world, of "
-      "current and "
-      "waves, in m/s: the shape of the arguments, and 3.\n\nx, y, z: metres, world frame; t: seconds; "
-      "broadcast as numpy "
-      "does.");
-  add_method(
-      "acceleration",
-      [](py::handle self, py::handle x, py::handle y, py::handle z, py::handle time, py::handle threads) {
-        return motion(self, x, y, z, time, threads, &WaterMotionArrays::accelerations, 3);
-      },
-      "acceleration($self, x, y, z, t, *, threads=0)\n--\n\nAcceleration of the water at points in the "
-      "world, in "
-      "m/s^2, as an observer sees it who drifts with the current: see velocity().");
-  add_method(
-      "pressure",
-      [](py::handle self, py::handle x, py::handle y, py::handle z, py::handle time, py::handle threads) {
-        return motion(self, x, y, z, time, threads, &WaterMotionArrays::pressures, 1);
-      },
-      "pressure($self, x, y, z, t, *, threads=0)\n--\n\nPressure over that of the air in Pa at points in "
-      "the "
-      "world, of water at rest and waves together; 0 above the\nsurface. Arguments: see velocity().");
-  const auto water_number = [&type](const char* name, double Water::*member, const char* doc) {
-    type.def_property_readonly(
-        name, [member](py::handle self) { return instance_of<SeaObject>(self).sea.water().*member; }, doc);
-  };
-  water_number("level", &Water::level, "float, m: the surface at rest is where up . x = level.");
-  water_number("density", &Water::density, "float, kg/m^3.");
-  water_number("gravity", &Water::gravity, "float, m/s^2.");
-  type.def_property_readonly(
-      "up", [](py::handle self) { return vector(instance_of<SeaObject>(self).sea.water().up_W); },
-      "(3,): unit vector, world frame.");
-  type.def_property_readonly(
-      "current", [](py::handle self) { return vector(instance_of<SeaObject>(self).sea.current_W()); },
+  add_motion("velocity", &motion<&WaterMotionArrays::velocities, 3>, kVelocityDoc);
+  add_motion("acceleration", &motion<&WaterMotionArrays::accelerations, 3>, kAccelerationDoc);
+  add_motion("pressure", &motion<&WaterMotionArrays::pressures, 1>, kPressureDoc);
+  add_water_properties(type, [](const SeaObject& object) { return object.sea.water(); });
+  add_property(
+      type, "current", [](const SeaObject& object) { return object.sea.current_W(); },
       "(3,), m/s: of the current, which carries the waves, world frame.");
-  type.def_property_readonly(
-      "axes",
-      [](py::handle self) {
-        const HorizontalAxes axes = instance_of<SeaObject>(self).sea.axes();
-        return py::make_tuple(vector(axes.e1_W), vector(axes.e2_W));
+  add_property(
+      type, "axes",
+      [](const SeaObject& object) {
+        const HorizontalAxes axes = object.sea.axes();
+        return py::make_tuple(axes.e1_W, axes.e2_W);
       },
       "Two (3,): the horizontal axes of elevation() and of wave directions, world frame.");
-  type.def_property_readonly(
-      "has_waves", [](py::handle self) { return instance_of<SeaObject>(self).sea.waves() != nullptr; },
+  add_property(
+      type, "has_waves", [](const SeaObject& object) { return object.sea.waves() != nullptr; },
       "bool: is any amplitude above 0?");
   type.def("__repr__", [](py::handle self) {
     const QuerySea& sea = instance_of<SeaObject>(self).sea;

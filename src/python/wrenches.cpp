@@ -1,8 +1,11 @@
 #include "python/wrenches.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <map>
+#include <span>
+#include <string>
 #include <utility>
 
 #include <pybind11/stl.h>
@@ -11,6 +14,7 @@
 #include "messages/wire_layout.h"
 #include "python/call_arguments.h"
 #include "python/slices.h"
+#include "python/status.h"
 
 namespace buoyancy::python {
 namespace {
@@ -29,44 +33,40 @@ struct HydrostaticsTable {
   bool single;
 };
 
-std::size_t wrenches_failed(Wrenches& wrenches) {
-  const std::span statuses(wrenches.statuses(), wrenches.size());
+std::size_t wrenches_failed(const Wrenches& wrenches) {
   return static_cast<std::size_t>(
-      std::ranges::count_if(statuses, [](std::int32_t status) { return status != 0; }));
+      std::ranges::count_if(wrenches.arrays().statuses, [](std::int32_t status) { return status != 0; }));
 }
 
-py::object vectors(py::handle self, double* (Wrenches::*part)()) {
+// A view of a part of the result with this many numbers per pose; a number of one pose is a float.
+py::object part_of(py::handle self, std::span<double> WrenchArrays::*part, py::ssize_t width) {
   auto& wrenches = instance_of<Wrenches>(self);
-  std::vector<Py_ssize_t> shape;
-  if (!wrenches.single()) shape.push_back(static_cast<Py_ssize_t>(wrenches.size()));
-  shape.push_back(3);
-  return make_array(std::move(shape), (wrenches.*part)(), self);
-}
-
-py::object scalars(py::handle self, double* (Wrenches::*part)()) {
-  auto& wrenches = instance_of<Wrenches>(self);
-  if (wrenches.single()) return py::float_(*(wrenches.*part)());
-  return make_array({static_cast<Py_ssize_t>(wrenches.size())}, (wrenches.*part)(), self);
+  double* const data = (wrenches.arrays().*part).data();
+  if (wrenches.single() && width == 1) return py::float_(*data);
+  std::vector<py::ssize_t> shape;
+  if (!wrenches.single()) shape.push_back(static_cast<py::ssize_t>(wrenches.size()));
+  if (width > 1) shape.push_back(width);
+  return py::array_t<double>(std::move(shape), data, self);
 }
 
 py::object statuses(py::handle self) {
   auto& wrenches = instance_of<Wrenches>(self);
-  if (wrenches.single()) return status_object(static_cast<BodyStatus>(*wrenches.statuses()));
-  return make_array({static_cast<Py_ssize_t>(wrenches.size())}, wrenches.statuses(), self);
+  if (wrenches.single()) return status_object(static_cast<BodyStatus>(wrenches.arrays().statuses[0]));
+  const std::span<std::int32_t> all = wrenches.arrays().statuses;
+  return py::array_t<std::int32_t>(static_cast<py::ssize_t>(all.size()), all.data(), self);
 }
 
 // "pose 3: BAD_QUATERNION: the norm ..."
-std::string failure_text(Wrenches& wrenches, std::size_t i) {
-  const auto status = static_cast<BodyStatus>(wrenches.statuses()[i]);
-  const std::string which = wrenches.body_ids.empty()
-                                ? (wrenches.single() ? "the pose" : "pose " + std::to_string(i))
-                                : "body " + std::to_string(wrenches.body_ids[i]);
+std::string failure_text(const Wrenches& wrenches, std::size_t i) {
+  const auto status = static_cast<BodyStatus>(wrenches.arrays().statuses[i]);
+  const std::string pose = wrenches.single() ? "the pose" : "pose " + std::to_string(i);
+  const std::string which = wrenches.body_ids.empty() ? pose : "body " + std::to_string(wrenches.body_ids[i]);
   return format_text("{}: {}: {}", which, to_string(status), explain(status));
 }
 
 void raise_for_status(py::handle self) {
   auto& wrenches = instance_of<Wrenches>(self);
-  const std::span known(wrenches.statuses(), wrenches.size());
+  const std::span<std::int32_t> known = wrenches.arrays().statuses;
   const auto failed = std::ranges::find_if(known, [](std::int32_t status) { return status != 0; });
   if (failed == known.end()) return;
   std::string text = failure_text(wrenches, static_cast<std::size_t>(failed - known.begin()));
@@ -79,7 +79,7 @@ void raise_for_status(py::handle self) {
 std::string describe(py::handle self) {
   auto& wrenches = instance_of<Wrenches>(self);
   std::map<std::int32_t, std::size_t> counts;
-  for (std::size_t i = 0; i < wrenches.size(); ++i) ++counts[wrenches.statuses()[i]];
+  for (const std::int32_t status : wrenches.arrays().statuses) ++counts[status];
   std::string text = "<buoyancy.Wrenches of " + std::to_string(wrenches.size()) +
                      (wrenches.size() == 1 ? " pose" : " poses");
   const char* separator = ": ";
@@ -94,10 +94,9 @@ std::string describe(py::handle self) {
 // "(K, 3), N: about the body's reference point."
 template <typename Member>
 std::string doc_of(const Field& field) {
-  std::vector<Py_ssize_t> shape;
-  MemberShape<Member>::append(shape);
+  const py::tuple shape = py::dtype::of<Member>().attr("shape");
   std::string doc = shape.empty() ? "(K," : "(K";
-  for (const Py_ssize_t size : shape) doc += ", " + std::to_string(size);
+  for (const py::handle size : shape) doc += ", " + std::string(py::str(size));
   doc += ")";
   if (!field.unit.empty()) (doc += ", ") += field.unit;
   if (!field.note.empty()) (doc += ": ") += field.note;
@@ -128,10 +127,10 @@ void add_fields(py::class_<View>& type, RecordsOf records_of) {
 void define_loads(py::module_& module) {
   py::class_<LoadsView> type(
       module, "Loads",
-      "Buoyancy, drag and added mass apart: result.loads of a body with outputs = [\"wrench\", "
-      "\"loads\"].\n\nArrays are views of the result, (K, ...), or (...) of one pose. Torques are "
-      "about the body's reference\npoint, all in the world frame. The fields are those of "
-      "body_loads_t (docs/messages.md).");
+      R"(Buoyancy, drag and added mass apart: result.loads of a body with outputs = ["wrench", "loads"].
+
+Arrays are views of the result, (K, ...), or (...) of one pose. Torques are about the body's reference
+point, all in the world frame. The fields are those of body_loads_t (docs/messages.md).)");
   add_fields<BodyLoads>(type, [](py::handle self) {
     auto& view = instance_of<LoadsView>(self);
     return std::pair<std::span<BodyLoads>, py::handle>(view.loads, view.result);
@@ -139,13 +138,12 @@ void define_loads(py::module_& module) {
 }
 
 void define_hydrostatics(py::module_& module) {
-  py::class_<HydrostaticsTable> type(
-      module, "Hydrostatics",
-      "Waterplane, metacentres and stiffness of each pose, in water at rest.\n\nArrays have the shape (K, "
-      "...), or (...) "
-      "of one pose. Points are relative to the position, in world axes.\nA value that does not exist is NaN, "
-      "such as the "
-      "metacentre of a dry body. The fields are those of\nbody_hydrostatics_t (docs/messages.md).");
+  py::class_<HydrostaticsTable> type(module, "Hydrostatics",
+                                     R"(Waterplane, metacentres and stiffness of each pose, in water at rest.
+
+Arrays have the shape (K, ...), or (...) of one pose. Points are relative to the position, in world axes.
+A value that does not exist is NaN, such as the metacentre of a dry body. The fields are those of
+body_hydrostatics_t (docs/messages.md).)");
   type.def_property_readonly(
       "status",
       [](py::handle self) -> py::object {
@@ -165,29 +163,33 @@ void define_hydrostatics(py::module_& module) {
 }  // namespace
 
 Wrenches::Wrenches(std::size_t poses, bool single)
-    : size_(poses),
-      single_(single),
+    : single_(single),
       memory_(std::make_unique_for_overwrite<std::byte[]>(
-          poses * (kDoublesPerPose * sizeof(double) + sizeof(std::int32_t)) + 1)) {}
-
-WrenchArrays Wrenches::arrays() {
-  return {{statuses(), size_},
-          {forces(), 3 * size_},
-          {torques(), 3 * size_},
-          {volumes(), size_},
-          {centers_of_buoyancy(), 3 * size_},
-          {force_error_bounds(), size_},
-          {torque_error_bounds(), size_}};
+          poses * (kDoublesPerPose * sizeof(double) + sizeof(std::int32_t)) + 1)) {
+  auto* next = reinterpret_cast<double*>(memory_.get());
+  const auto take = [&](std::size_t width) {
+    return std::span(std::exchange(next, next + width * poses), width * poses);
+  };
+  arrays_.forces = take(3);
+  arrays_.torques = take(3);
+  arrays_.centers_of_buoyancy = take(3);
+  arrays_.volumes = take(1);
+  arrays_.force_error_bounds = take(1);
+  arrays_.torque_error_bounds = take(1);
+  arrays_.statuses = {reinterpret_cast<std::int32_t*>(next), poses};
 }
 
 void Wrenches::set(std::size_t i, const BodyWrench& wrench) {
-  statuses()[i] = static_cast<std::int32_t>(wrench.status);
-  std::ranges::copy(wrench.force, forces() + 3 * i);
-  std::ranges::copy(wrench.torque, torques() + 3 * i);
-  std::ranges::copy(wrench.center_of_buoyancy, centers_of_buoyancy() + 3 * i);
-  volumes()[i] = wrench.submerged_volume;
-  force_error_bounds()[i] = wrench.force_error_bound;
-  torque_error_bounds()[i] = wrench.torque_error_bound;
+  const auto copy = [i](const std::array<double, 3>& from, std::span<double> to) {
+    std::ranges::copy(from, to.begin() + static_cast<std::ptrdiff_t>(3 * i));
+  };
+  arrays_.statuses[i] = static_cast<std::int32_t>(wrench.status);
+  copy(wrench.force, arrays_.forces);
+  copy(wrench.torque, arrays_.torques);
+  copy(wrench.center_of_buoyancy, arrays_.centers_of_buoyancy);
+  arrays_.volumes[i] = wrench.submerged_volume;
+  arrays_.force_error_bounds[i] = wrench.force_error_bound;
+  arrays_.torque_error_bounds[i] = wrench.torque_error_bound;
 }
 
 py::object wrenches_for(PyObject* out, std::size_t poses, bool single) {
@@ -248,31 +250,28 @@ py::object evaluate_hydrostatics(const Body& body, const Water& water, const Pos
 
 void define_wrenches(py::module_& module) {
   py::class_<Wrenches> type(module, "Wrenches",
-                            "The force and torque on a body, of each pose of a query.\n\nArrays are views of "
-                            "this object's memory: of K poses "
-                            "(K, ...), of one pose (3,) and numbers. They keep it\nalive, and change when it "
-                            "is passed as out= again. Poses "
-                            "with a status other than OK have zeros.");
-  type.def_property_readonly(
-      "force", [](py::handle self) { return vectors(self, &Wrenches::forces); }, "(K, 3), N, world frame.");
-  type.def_property_readonly(
-      "torque", [](py::handle self) { return vectors(self, &Wrenches::torques); },
+                            R"(The force and torque on a body, of each pose of a query.
+
+Arrays are views of this object's memory: of K poses (K, ...), of one pose (3,) and numbers. They keep it
+alive, and change when it is passed as out= again. Poses with a status other than OK have zeros.)");
+  const auto add = [&type](const char* name, std::span<double> WrenchArrays::*part, py::ssize_t width,
+                           const char* doc) {
+    type.def_property_readonly(
+        name, [=](py::handle self) { return part_of(self, part, width); }, doc);
+  };
+  add("force", &WrenchArrays::forces, 3, "(K, 3), N, world frame.");
+  add("torque", &WrenchArrays::torques, 3,
       "(K, 3), N m, world frame, about the body's reference point (a mesh: its origin).");
-  type.def_property_readonly(
-      "volume", [](py::handle self) { return scalars(self, &Wrenches::volumes); },
-      "(K,), m^3: the displaced water.");
-  type.def_property_readonly(
-      "center_of_buoyancy", [](py::handle self) { return vectors(self, &Wrenches::centers_of_buoyancy); },
+  add("volume", &WrenchArrays::volumes, 1, "(K,), m^3: the displaced water.");
+  add("center_of_buoyancy", &WrenchArrays::centers_of_buoyancy, 3,
       "(K, 3), m, world axes, relative to the position.");
-  type.def_property_readonly(
-      "force_error_bound", [](py::handle self) { return scalars(self, &Wrenches::force_error_bounds); },
+  add("force_error_bound", &WrenchArrays::force_error_bounds, 1,
       "(K,), N: the error of the force is no larger.");
-  type.def_property_readonly(
-      "torque_error_bound", [](py::handle self) { return scalars(self, &Wrenches::torque_error_bounds); },
+  add("torque_error_bound", &WrenchArrays::torque_error_bounds, 1,
       "(K,), N m: the error of the torque is no larger.");
   type.def_property_readonly("status", &statuses, "(K,) int32: 0 for OK, see Status; of one pose a Status.");
-  type.def_property_readonly(
-      "ok", [](py::handle self) { return wrenches_failed(instance_of<Wrenches>(self)) == 0; },
+  add_property(
+      type, "ok", [](const Wrenches& wrenches) { return wrenches_failed(wrenches) == 0; },
       "bool: is every status OK?");
   type.def_property_readonly(
       "loads",
@@ -287,16 +286,17 @@ void define_wrenches(py::module_& module) {
       [](py::handle self) -> py::object {
         auto& wrenches = instance_of<Wrenches>(self);
         if (!wrenches.utime) return py::none();
-        return make_array({static_cast<Py_ssize_t>(wrenches.body_ids.size())}, wrenches.body_ids.data(),
-                          self);
+        const auto count = static_cast<py::ssize_t>(wrenches.body_ids.size());
+        return py::array_t<std::int32_t>(count, wrenches.body_ids.data(), self);
       },
       "(K,) int32 of a response from the service, else None.");
-  type.def_property_readonly(
-      "utime", [](py::handle self) { return instance_of<Wrenches>(self).utime; },
-      "int, microseconds, of the request that a response from the service belongs to, else None.");
+  add_property(type, "utime", &Wrenches::utime,
+               "int, microseconds, of the request that a response from the service belongs to, else None.");
   type.def("raise_for_status", &raise_for_status,
-           "raise_for_status($self)\n--\n\nRaise a StatusError that names the first pose that is not OK, and "
-           "why.");
+           R"(raise_for_status($self)
+--
+
+Raise a StatusError that names the first pose that is not OK, and why.)");
   type.def("__len__", [](py::handle self) { return instance_of<Wrenches>(self).size(); });
   type.def("__repr__", &describe);
   define_loads(module);

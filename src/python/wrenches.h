@@ -5,12 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "messages/loads.h"
 #include "python/pose_input.h"
-#include "python/result_array.h"
 #include "query/pose_evaluation.h"
 
 namespace buoyancy::python {
@@ -22,17 +20,9 @@ class Wrenches {
   // single: Python sees (3,) rather than (1, 3). Values are not initialised.
   Wrenches(std::size_t poses, bool single);
 
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return arrays_.statuses.size(); }
   bool single() const { return single_; }
-  // The parts of the allocation, K the number of poses.
-  double* forces() { return numbers(); }
-  double* torques() { return numbers() + 3 * size_; }
-  double* centers_of_buoyancy() { return numbers() + 6 * size_; }
-  double* volumes() { return numbers() + 9 * size_; }
-  double* force_error_bounds() { return numbers() + 10 * size_; }
-  double* torque_error_bounds() { return numbers() + 11 * size_; }
-  std::int32_t* statuses() { return reinterpret_cast<std::int32_t*>(numbers() + 12 * size_); }
-  WrenchArrays arrays();
+  const WrenchArrays& arrays() const { return arrays_; }
   void set(std::size_t i, const BodyWrench& wrench);
 
   // Of a body with loads, one per pose, else empty. has_loads is part of it where there are no poses.
@@ -43,11 +33,9 @@ class Wrenches {
   std::optional<std::int64_t> utime;
 
  private:
-  double* numbers() { return reinterpret_cast<double*>(memory_.get()); }
-
-  std::size_t size_;
   bool single_;
   std::unique_ptr<std::byte[]> memory_;
+  WrenchArrays arrays_;  // parts of the memory
 };
 
 // The Wrenches to fill: `out`, or a new one for nullptr and None. Throws where `out` has another shape.

@@ -228,7 +228,7 @@ void expect_python_class(const std::string& name, char length, bool single,
     const bool is_status = field.name == "status";
     std::string type = is_status ? "IntArray" : "Array";
     if (single && field.shape.empty()) type = "Union[" + type + (is_status ? ", Status]" : ", float]");
-    const std::string declaration = "def " + property + "(self) -> " + type + ": ...  # (" + length;
+    const std::string declaration = "    " + property + ": Final[" + type + "]  # (" + length;
     ASSERT_TRUE(contains(of_class, declaration)) << name;
     const std::string comment = between(of_class, declaration, "\n");
     std::string shape = field.shape.empty() ? ",)" : "";

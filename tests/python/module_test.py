@@ -25,6 +25,7 @@ class DescribesItself(TestCase):
             if not isinstance(node, ast.ClassDef) or issubclass(actual, (Exception, int)):
                 continue
             stubbed = {member.name for member in node.body if isinstance(member, ast.FunctionDef)}
+            stubbed |= {member.target.id for member in node.body if isinstance(member, ast.AnnAssign)}
             self.assertEqual(public(stubbed), public(vars(actual)), name)
         constants = {target.id for member in self.definitions["Status"].body for target in member.targets}
         self.assertEqual(constants, set(buoyancy.Status.__members__))

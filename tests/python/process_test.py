@@ -1,4 +1,4 @@
-"""The module beside threads, child processes, and without numpy."""
+"""The module beside threads and child processes, and without numpy."""
 import ctypes
 import functools
 import os
@@ -240,38 +240,19 @@ except buoyancy.InputError as error:
             self.assertEqual((done.returncode, done.stderr), (0, ""))
 
 
-WITHOUT_NUMPY = """
-import array, sys
-sys.modules["numpy"] = None
-import buoyancy
-points = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
-faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
-         (1, 5, 7), (1, 7, 3)]
-mesh = buoyancy.Mesh(points, faces)
-one = mesh.query((0, 0, -0.25), (1, 0, 0, 0))
-assert isinstance(one.force, memoryview) and one.force.format == "d" and one.force.shape == (3,), one.force
-assert one.volume == 0.75 and one.status is buoyancy.Status.OK
-position = memoryview(array.array("d", [0, 0, -0.25, 0, 0, 5])).cast("B").cast("d", (2, 3))
-many = mesh.query(position, (1, 0, 0, 0))
-assert many.force.shape == (2, 3) and many.volume.tolist() == [0.75, 0.0] and many.status.tolist() == [0, 0]
-assert many.force[0, 2] == one.force[2]
-force = many.force
-del many
-assert force[0, 2] == one.force[2]
-assert mesh.hydrostatics((0, 0, 0), (1, 0, 0, 0)).stiffness.shape == (6, 6)
-assert mesh.hydrostatics(position, (1, 0, 0, 0)).waterplane_area.tolist() == [1.0, 0.0]
-assert buoyancy.Sea().elevation([0, 1], 0, 0).tolist() == [0.0, 0.0]
-try:
-    mesh.query("abc", (1, 0, 0, 0))
-except TypeError:
-    print("done")
-"""
+class NeedsNumpy(TestCase):
+    def test_an_import_without_it_names_the_package(self):
+        program = "import sys; sys.modules['numpy'] = None; import buoyancy"
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=TIMEOUT)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, "(?m)^ImportError: buoyancy needs numpy, .* install the package python3-numpy$")
 
-
-class WorksWithoutNumpy(TestCase):
-    def test_results_are_memoryviews(self):
-        done = subprocess.run([sys.executable, "-c", WITHOUT_NUMPY], capture_output=True, text=True, timeout=TIMEOUT)
-        self.assertEqual((done.returncode, done.stdout), (0, "done\n"), done.stderr)
+    def test_only_when_it_is_used(self):
+        # buoyancy.testing enters a network of its own before numpy starts threads.
+        program = ("import sys, buoyancy.testing; before = 'numpy' in sys.modules\n"
+                   "buoyancy.Sea; print(before, 'numpy' in sys.modules)")
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=TIMEOUT)
+        self.assertEqual((done.returncode, done.stdout), (0, "False True\n"), done.stderr)
 
 
 if __name__ == "__main__":

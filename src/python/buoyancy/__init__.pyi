@@ -1,11 +1,11 @@
 """Types of the module; its docstrings describe it (help(buoyancy)).
 
-An Array is a numpy.ndarray, or a memoryview where numpy is not installed. ArrayLike is what has numbers: an array of
-floats or integers, a list or tuple of them, or an object with the buffer protocol. (K,) and so on are shapes.
+ArrayLike is what has numbers: an array of floats or integers, a list or tuple of them, or an object with the buffer
+protocol. (K,) and so on are shapes. Attributes that are Final are properties without a setter.
 """
 import enum
 from os import PathLike
-from typing import Any, Literal, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Final, Literal, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -37,78 +37,45 @@ class Status(enum.IntEnum):
     NOT_CERTIFIED = 10
 
 class Wrenches:
-    @property
-    def force(self) -> Array: ...  # (K, 3) or (3,), N
-    @property
-    def torque(self) -> Array: ...  # (K, 3) or (3,), N m
-    @property
-    def volume(self) -> Union[Array, float]: ...  # (K,), m^3
-    @property
-    def center_of_buoyancy(self) -> Array: ...  # (K, 3) or (3,), m, relative to the position
-    @property
-    def force_error_bound(self) -> Union[Array, float]: ...  # (K,), N
-    @property
-    def torque_error_bound(self) -> Union[Array, float]: ...  # (K,), N m
-    @property
-    def status(self) -> Union[IntArray, Status]: ...  # (K,)
-    @property
-    def ok(self) -> bool: ...
-    @property
-    def loads(self) -> Optional[Loads]: ...
-    @property
-    def body_ids(self) -> Optional[IntArray]: ...
-    @property
-    def utime(self) -> Optional[int]: ...
+    force: Final[Array]  # (K, 3) or (3,), N
+    torque: Final[Array]  # (K, 3) or (3,), N m
+    volume: Final[Union[Array, float]]  # (K,), m^3
+    center_of_buoyancy: Final[Array]  # (K, 3) or (3,), m, relative to the position
+    force_error_bound: Final[Union[Array, float]]  # (K,), N
+    torque_error_bound: Final[Union[Array, float]]  # (K,), N m
+    status: Final[Union[IntArray, Status]]  # (K,)
+    ok: Final[bool]
+    loads: Final[Optional[Loads]]
+    body_ids: Final[Optional[IntArray]]
+    utime: Final[Optional[int]]
     def raise_for_status(self) -> None: ...
     def __len__(self) -> int: ...
 
 class Loads:
-    @property
-    def immersion(self) -> Union[Array, float]: ...  # (K,)
-    @property
-    def buoyancy_force(self) -> Array: ...  # (K, 3), N
-    @property
-    def buoyancy_torque(self) -> Array: ...  # (K, 3), N m
-    @property
-    def drag_force(self) -> Array: ...  # (K, 3), N
-    @property
-    def drag_torque(self) -> Array: ...  # (K, 3), N m
-    @property
-    def added_mass_force(self) -> Array: ...  # (K, 3), N
-    @property
-    def added_mass_torque(self) -> Array: ...  # (K, 3), N m
-    @property
-    def added_mass(self) -> Array: ...  # (K, 6, 6), kg, kg m, kg m^2
-    @property
-    def damping(self) -> Array: ...  # (K, 6, 6), N, N m per m/s, rad/s
-    @property
-    def water_velocity(self) -> Array: ...  # (K, 3), m/s
+    immersion: Final[Union[Array, float]]  # (K,)
+    buoyancy_force: Final[Array]  # (K, 3), N
+    buoyancy_torque: Final[Array]  # (K, 3), N m
+    drag_force: Final[Array]  # (K, 3), N
+    drag_torque: Final[Array]  # (K, 3), N m
+    added_mass_force: Final[Array]  # (K, 3), N
+    added_mass_torque: Final[Array]  # (K, 3), N m
+    added_mass: Final[Array]  # (K, 6, 6), kg, kg m, kg m^2
+    damping: Final[Array]  # (K, 6, 6), N, N m per m/s, rad/s
+    water_velocity: Final[Array]  # (K, 3), m/s
 
 class Hydrostatics:
-    @property
-    def status(self) -> Union[IntArray, Status]: ...  # (K,)
-    @property
-    def volume(self) -> Union[Array, float]: ...  # (K,), m^3
-    @property
-    def center_of_buoyancy(self) -> Array: ...  # (K, 3), m
-    @property
-    def wetted_area(self) -> Union[Array, float]: ...  # (K,), m^2
-    @property
-    def waterplane_area(self) -> Union[Array, float]: ...  # (K,), m^2
-    @property
-    def waterplane_centroid(self) -> Array: ...  # (K, 3), m
-    @property
-    def waterplane_second_moments(self) -> Array: ...  # (K, 2), m^4
-    @property
-    def waterplane_axes(self) -> Array: ...  # (K, 2, 3)
-    @property
-    def metacentric_radii(self) -> Array: ...  # (K, 2), m
-    @property
-    def metacenters(self) -> Array: ...  # (K, 2, 3), m
-    @property
-    def metacentric_heights(self) -> Array: ...  # (K, 2), m
-    @property
-    def stiffness(self) -> Array: ...  # (K, 6, 6), N, N m per m, rad
+    status: Final[Union[IntArray, Status]]  # (K,)
+    volume: Final[Union[Array, float]]  # (K,), m^3
+    center_of_buoyancy: Final[Array]  # (K, 3), m
+    wetted_area: Final[Union[Array, float]]  # (K,), m^2
+    waterplane_area: Final[Union[Array, float]]  # (K,), m^2
+    waterplane_centroid: Final[Array]  # (K, 3), m
+    waterplane_second_moments: Final[Array]  # (K, 2), m^4
+    waterplane_axes: Final[Array]  # (K, 2, 3)
+    metacentric_radii: Final[Array]  # (K, 2), m
+    metacenters: Final[Array]  # (K, 2, 3), m
+    metacentric_heights: Final[Array]  # (K, 2), m
+    stiffness: Final[Array]  # (K, 6, 6), N, N m per m, rad
     def __len__(self) -> int: ...
 
 class Sea:
@@ -137,20 +104,13 @@ class Sea:
     def pressure(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, t: ArrayLike, *, threads: int = 0
     ) -> Union[Array, float]: ...  # Pa
-    @property
-    def level(self) -> float: ...
-    @property
-    def density(self) -> float: ...
-    @property
-    def gravity(self) -> float: ...
-    @property
-    def up(self) -> Array: ...
-    @property
-    def current(self) -> Array: ...  # m/s
-    @property
-    def axes(self) -> Tuple[Array, Array]: ...
-    @property
-    def has_waves(self) -> bool: ...
+    level: Final[float]
+    density: Final[float]
+    gravity: Final[float]
+    up: Final[Array]
+    current: Final[Array]  # m/s
+    axes: Final[Tuple[Array, Array]]
+    has_waves: Final[bool]
 
 class Mesh:
     def __init__(
@@ -195,72 +155,40 @@ class Mesh:
         center_of_mass: Optional[ArrayLike] = None,
         threads: int = 0,
     ) -> Hydrostatics: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def format(self) -> str: ...
-    @property
-    def report(self) -> str: ...
-    @property
-    def volume(self) -> float: ...  # m^3
-    @property
-    def area(self) -> float: ...  # m^2
-    @property
-    def triangles(self) -> int: ...
-    @property
-    def vertices(self) -> int: ...
-    @property
-    def components(self) -> int: ...
-    @property
-    def closed(self) -> bool: ...
-    @property
-    def flipped(self) -> bool: ...
-    @property
-    def boundary_edges(self) -> int: ...
-    @property
-    def non_manifold_edges(self) -> int: ...
-    @property
-    def misoriented_edges(self) -> int: ...
-    @property
-    def degenerate_faces(self) -> int: ...
-    @property
-    def dropped_faces(self) -> int: ...
-    @property
-    def duplicate_faces(self) -> int: ...
-    @property
-    def intersecting_pairs(self) -> Optional[int]: ...
-    @property
-    def bounding_box(self) -> Tuple[Array, Array]: ...  # m
-    @property
-    def center_of_mass(self) -> Array: ...  # (3,), m
-    @property
-    def inertia(self) -> Array: ...  # (3, 3), m^5: times the density kg m^2
+    name: Final[str]
+    format: Final[str]
+    report: Final[str]
+    volume: Final[float]  # m^3
+    area: Final[float]  # m^2
+    triangles: Final[int]
+    vertices: Final[int]
+    components: Final[int]
+    closed: Final[bool]
+    flipped: Final[bool]
+    boundary_edges: Final[int]
+    non_manifold_edges: Final[int]
+    misoriented_edges: Final[int]
+    degenerate_faces: Final[int]
+    dropped_faces: Final[int]
+    duplicate_faces: Final[int]
+    intersecting_pairs: Final[Optional[int]]
+    bounding_box: Final[Tuple[Array, Array]]  # m
+    center_of_mass: Final[Array]  # (3,), m
+    inertia: Final[Array]  # (3, 3), m^5: times the density kg m^2
 
 class Body:
-    @property
-    def id(self) -> int: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def method(self) -> str: ...
-    @property
-    def tolerance(self) -> float: ...
-    @property
-    def volume(self) -> float: ...  # m^3
-    @property
-    def triangles(self) -> int: ...
-    @property
-    def report(self) -> str: ...
-    @property
-    def reference_point(self) -> Array: ...  # (3,), m
-    @property
-    def center_of_mass(self) -> Optional[Array]: ...  # (3,), m
-    @property
-    def outputs(self) -> Tuple[str, ...]: ...
-    @property
-    def position(self) -> Array: ...  # (3,), m
-    @property
-    def quaternion(self) -> Array: ...  # (4,)
+    id: Final[int]
+    name: Final[str]
+    method: Final[str]
+    tolerance: Final[float]
+    volume: Final[float]  # m^3
+    triangles: Final[int]
+    report: Final[str]
+    reference_point: Final[Array]  # (3,), m
+    center_of_mass: Final[Optional[Array]]  # (3,), m
+    outputs: Final[Tuple[str, ...]]
+    position: Final[Array]  # (3,), m
+    quaternion: Final[Array]  # (4,)
 
 class Scene:
     def __init__(self, path: Path) -> None: ...
@@ -282,20 +210,13 @@ class Scene:
     def hydrostatics(
         self, body_id: Union[int, str], position: ArrayLike, quaternion: ArrayLike, *, threads: int = 0
     ) -> Hydrostatics: ...
-    @property
-    def bodies(self) -> Tuple[Body, ...]: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def has_waves(self) -> bool: ...
-    @property
-    def level(self) -> float: ...
-    @property
-    def density(self) -> float: ...
-    @property
-    def gravity(self) -> float: ...
-    @property
-    def up(self) -> Array: ...
+    bodies: Final[Tuple[Body, ...]]
+    name: Final[str]
+    has_waves: Final[bool]
+    level: Final[float]
+    density: Final[float]
+    gravity: Final[float]
+    up: Final[Array]
 
 class Client:
     def __init__(
@@ -328,76 +249,46 @@ class Client:
     def reserve(self, bodies: int) -> Optional[str]: ...
     def status(self, timeout: float = 2.0) -> Mapping[str, Union[int, float, str]]: ...
     def close(self) -> None: ...
-    @property
-    def closed(self) -> bool: ...
-    @property
-    def statistics(self) -> Mapping[str, Union[int, float]]: ...
+    closed: Final[bool]
+    statistics: Final[Mapping[str, Union[int, float]]]
     def __enter__(self) -> Client: ...
     def __exit__(self, *args: object) -> None: ...
 
 class RecordedStates:
-    @property
-    def timestamp(self) -> LongArray: ...  # (N,), us
-    @property
-    def utime(self) -> LongArray: ...
-    @property
-    def session_id(self) -> LongArray: ...
-    @property
-    def seq(self) -> LongArray: ...
-    @property
-    def body_id(self) -> IntArray: ...
-    @property
-    def lead_time(self) -> Array: ...  # (N,), s
-    @property
-    def position(self) -> Array: ...  # (N, 3), m
-    @property
-    def quaternion(self) -> Array: ...  # (N, 4)
-    @property
-    def linear_velocity(self) -> Array: ...  # (N, 3), m/s
-    @property
-    def angular_velocity(self) -> Array: ...  # (N, 3), rad/s
+    timestamp: Final[LongArray]  # (N,), us
+    utime: Final[LongArray]
+    session_id: Final[LongArray]
+    seq: Final[LongArray]
+    body_id: Final[IntArray]
+    lead_time: Final[Array]  # (N,), s
+    position: Final[Array]  # (N, 3), m
+    quaternion: Final[Array]  # (N, 4)
+    linear_velocity: Final[Array]  # (N, 3), m/s
+    angular_velocity: Final[Array]  # (N, 3), rad/s
     def __len__(self) -> int: ...
 
 class RecordedWrenches:
-    @property
-    def timestamp(self) -> LongArray: ...  # (N,), us
-    @property
-    def utime(self) -> LongArray: ...
-    @property
-    def session_id(self) -> LongArray: ...
-    @property
-    def seq(self) -> LongArray: ...
-    @property
-    def body_id(self) -> IntArray: ...
-    @property
-    def status(self) -> IntArray: ...  # (N,)
-    @property
-    def force(self) -> Array: ...  # (N, 3), N
-    @property
-    def torque(self) -> Array: ...  # (N, 3), N m
-    @property
-    def volume(self) -> Array: ...  # (N,), m^3
-    @property
-    def center_of_buoyancy(self) -> Array: ...  # (N, 3), m
-    @property
-    def force_error_bound(self) -> Array: ...  # (N,), N
-    @property
-    def torque_error_bound(self) -> Array: ...  # (N,), N m
+    timestamp: Final[LongArray]  # (N,), us
+    utime: Final[LongArray]
+    session_id: Final[LongArray]
+    seq: Final[LongArray]
+    body_id: Final[IntArray]
+    status: Final[IntArray]  # (N,)
+    force: Final[Array]  # (N, 3), N
+    torque: Final[Array]  # (N, 3), N m
+    volume: Final[Array]  # (N,), m^3
+    center_of_buoyancy: Final[Array]  # (N, 3), m
+    force_error_bound: Final[Array]  # (N,), N
+    torque_error_bound: Final[Array]  # (N,), N m
     def __len__(self) -> int: ...
 
 class Log:
-    @property
-    def states(self) -> RecordedStates: ...
-    @property
-    def wrenches(self) -> RecordedWrenches: ...
-    @property
-    def corrupt_sections(self) -> Tuple[str, ...]: ...
-    @property
-    def missing_requests(self) -> Mapping[int, Sequence[Tuple[int, int]]]: ...
-    @property
-    def missing_responses(self) -> Mapping[int, Sequence[Tuple[int, int]]]: ...
-    @property
-    def rejected(self) -> int: ...
+    states: Final[RecordedStates]
+    wrenches: Final[RecordedWrenches]
+    corrupt_sections: Final[Tuple[str, ...]]
+    missing_requests: Final[Mapping[int, Sequence[Tuple[int, int]]]]
+    missing_responses: Final[Mapping[int, Sequence[Tuple[int, int]]]]
+    rejected: Final[int]
 
 def read_log(
     path: Path, *, states_channel: str = "BUOYANCY_STATES", wrenches_channel: str = "BUOYANCY_WRENCHES"
