@@ -1,6 +1,8 @@
 #include "service/daemon/counter_warnings.h"
 
 #include <array>
+#include <string_view>
+#include <utility>
 
 #include <spdlog/fmt/fmt.h>
 
@@ -55,11 +57,13 @@ std::vector<LogEvent> warnings_since(const ServiceCounters& before, const Servic
     const auto status = static_cast<BodyStatus>(i);
     const std::int64_t increase = now.bodies[i] - before.bodies[i];
     if (status != BodyStatus::kOk && increase > 0) {
-      const std::string place =
+      std::string detail =
           newest[i] ? fmt::format("body {} in session {}", newest[i]->body_id, newest[i]->session_id) : "";
-      const std::string remedy = remedy_for(status);
-      warnings.push_back({fmt::format("bodies with status {}", to_string(status)), increase,
-                          place + (place.empty() || remedy.empty() ? "" : "; ") + remedy});
+      const std::string_view remedy = remedy_for(status);
+      if (!detail.empty() && !remedy.empty()) detail += "; ";
+      detail += remedy;
+      warnings.push_back(
+          {fmt::format("bodies with status {}", to_string(status)), increase, std::move(detail)});
     }
   }
   struct Growth {

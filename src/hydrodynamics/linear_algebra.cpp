@@ -17,7 +17,7 @@ SymmetricEigen<n> symmetric_eigen(const Eigen::Matrix<double, n, n>& matrix,
   // The eigensolver also decomposes the mass, but does not say whether it is positive definite.
   if (symmetric.allFinite() && mass.allFinite() && Eigen::LLT<Matrix>(mass).info() == Eigen::Success) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver(symmetric, mass);
-    const SymmetricEigen<n> eigen{solver.eigenvalues(), solver.eigenvectors()};
+    SymmetricEigen<n> eigen{solver.eigenvalues(), solver.eigenvectors()};
     if (eigen.values.allFinite() && eigen.vectors.allFinite()) return eigen;
   }
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

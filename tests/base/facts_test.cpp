@@ -42,7 +42,8 @@ TEST(Facts, IncludeOtherFacts) {
   one.line("heave").add("period", 2.0, "period {} s");
   Facts facts;
   facts.heading("body").list("holes");
-  facts.include("heave", one).include_in("holes", std::move(one)).update(Facts().add("turned", true));
+  facts.include("heave", one);
+  facts.include_in("holes", std::move(one)).update(Facts().add("turned", true));
   EXPECT_EQ(json_line(facts.json()), R"({"holes":[{"period":2.0}],"heave":{"period":2.0},"turned":true})");
   EXPECT_EQ(facts.text(), "body\n  heave         period 2 s\n  heave         period 2 s");
 }
