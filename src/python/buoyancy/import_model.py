@@ -134,7 +134,7 @@ class Importer:
         for coefficients in self.water.coefficients:
             if coefficients.link not in imported:
                 self.report.leave_out(
-                    f"coefficients of the link '{coefficients.link}', which is no body " f"({coefficients.source})"
+                    f"coefficients of the link '{coefficients.link}', which is no body ({coefficients.source})"
                 )
         text.comment("")
         for title, sentences in (("Warnings", self.report.warnings), ("Not converted", self.report.not_converted)):
@@ -152,7 +152,7 @@ class Importer:
             text.key(
                 "up",
                 scene_toml.vector([-c / length for c in model.gravity]),
-                f"against gravity, " f"{model.gravity_source}",
+                f"against gravity, {model.gravity_source}",
             )
         elif model.gravity is not None:
             self.report.leave_out(f"gravity 0 ({model.gravity_source}): the scene has its default")

@@ -251,7 +251,7 @@ class Hydrodynamics:
             if found is not None:
                 value = f" = {found.text.strip()}" if found.text.strip() else ""
                 self.report.leave_out(
-                    f"<{tag}>{value} of '{plugin.name}': buoyancy follows from the geometry " f"({found.source})"
+                    f"<{tag}>{value} of '{plugin.name}': buoyancy follows from the geometry ({found.source})"
                 )
         self.wavefield(plugin)
         return True
