@@ -155,7 +155,7 @@ void ResponseChecks::add(const RequestId& id, const std::vector<BodyState>& stat
 double ResponseChecks::volume_limit(const RequestId& id, const BodyState& state, const Body& body,
                                     const BodyWrench& expected, const BodyWrench& received) {
   const double rounding = kRounding * body.solver.mesh().volume;
-  const CurrentWater water = water_.move_to(id.utime, 0.0).water;
+  const WaterState water = water_.move_to(id.utime, 0.0).water;
   if (water.waves == nullptr) {
     const double weight = scene_->water().density * scene_->water().gravity;  // [N/m^3]
     if (!(weight > 0.0)) return body.solver.tolerance() * body.solver.mesh().volume + rounding;

@@ -95,9 +95,9 @@ std::string encoded_states(const PageRows& rows) {
 
 Json mesh_json(const FloatingBody& body) {
   view::MeshDrawing drawing;
-  for (const FloatingBody::Term& term : body.terms()) {
-    if (term.placed.factor < 0.0) continue;
-    view::append(drawing, term.placed.mesh->surface, term.R_B, term.offset_B);
+  for (const FloatingBody::SignedVolume& volume : body.volumes()) {
+    if (volume.placed.signed_permeability < 0.0) continue;
+    view::append(drawing, volume.placed.mesh->surface, volume.R_B, volume.offset_B);
   }
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 high = -low;

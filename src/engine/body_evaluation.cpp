@@ -83,7 +83,7 @@ bool equal_branch_free(const PoseBits& a, const PoseBits& b) {
   return difference == 0;
 }
 
-WaveBuoyancyResult buoyancy_of(const Solver& solver, const PreparedMesh& mesh, const CurrentWater& water,
+WaveBuoyancyResult buoyancy_of(const Solver& solver, const PreparedMesh& mesh, const WaterState& water,
                                const Pose& pose, const Vec3& reference_B) {
   if (water.waves == nullptr) return {.result = buoyancy(solver, pose, *water.at_rest, reference_B)};
   return buoyancy_in_waves(solver, mesh.wave_mesh.value(), *water.waves, pose, reference_B);
@@ -93,8 +93,8 @@ WaveDetails details_of(const WaveBuoyancyResult& computed) {
   return {computed.work_capped, computed.sea_too_steep, computed.below_bed, computed.volume_error_bound};
 }
 
-void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& validated,
-              BodyOutcome& outcome, const BodyCondition* condition) {
+void evaluate(const Body& body, const WaterState& water, const ValidatedPose& validated, BodyOutcome& outcome,
+              const BodyCondition* condition) {
   WaveBuoyancyResult computed =
       buoyancy_of(body.solver, *body.prepared_mesh, water, validated.pose, body.reference_B);
   double flooded_volume = 0.0;
@@ -124,7 +124,7 @@ void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& 
   return true;
 }
 
-bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const CurrentWater& water,
+bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const WaterState& water,
                               const ValidatedPose& validated, BodyOutcome& outcome) {
   if (body.subdivision != nullptr) return false;
   if (water.waves != nullptr) {

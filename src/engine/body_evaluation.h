@@ -56,14 +56,14 @@ struct BodyOutcome {
 };
 
 // The water at a request's time.
-struct CurrentWater {
+struct WaterState {
   const Water* at_rest = nullptr;    // nullptr: unknown, since no sea has been received for this time
   const SeaAtTime* waves = nullptr;  // nullptr: the water is at rest
 };
 
 // The result of a mesh at a pose. mesh: of the solver. Precondition: the water is known. No heap allocation,
 // except, in waves, until a thread's buffers are as large as its queries need.
-WaveBuoyancyResult buoyancy_of(const Solver& solver, const PreparedMesh& mesh, const CurrentWater& water,
+WaveBuoyancyResult buoyancy_of(const Solver& solver, const PreparedMesh& mesh, const WaterState& water,
                                const Pose& pose, const Vec3& reference_B);
 
 // The details of a result of buoyancy_of().
@@ -71,13 +71,13 @@ WaveDetails details_of(const WaveBuoyancyResult& computed);
 
 // condition: of the body's compartments and tanks; nullptr: that of the scene file. Preconditions:
 // validated.status is kOk, and the water is known.
-void evaluate(const Body& body, const CurrentWater& water, const ValidatedPose& validated,
-              BodyOutcome& outcome, const BodyCondition* condition = nullptr);
+void evaluate(const Body& body, const WaterState& water, const ValidatedPose& validated, BodyOutcome& outcome,
+              const BodyCondition* condition = nullptr);
 // Sets outcome to what bounds alone decide (see try_buoyancy_from_bounds, and in waves
 // try_buoyancy_in_waves_from_bounds). Returns false, and leaves outcome unchanged, where they do not suffice,
 // and for a body with compartments or tanks.
 // Preconditions: validated.status is kOk, and the water is known. No heap allocation.
-bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const CurrentWater& water,
+bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const WaterState& water,
                               const ValidatedPose& validated, BodyOutcome& outcome);
 // Sets the fields of outcome that accompany its result, which was computed at a valid pose; in_waves to those
 // of water at rest. flooded_volume stays.

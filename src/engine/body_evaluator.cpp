@@ -61,7 +61,7 @@ void BodyEvaluator::set_scene(const Scene& scene) {
     const auto [kind, is_new] = known.emplace(key, static_cast<std::uint32_t>(kinds.size()));
     if (is_new) {
       kinds.push_back(
-          {.example = &body,
+          {.representative = &body,
            .submerged = submerged_constants(body.solver.mesh(), scene.water(), reference),
            .estimated_time = estimated_time(body.solver, scene.sea() != nullptr || scene.receives_sea())});
     }
@@ -128,7 +128,7 @@ void BodyEvaluator::run(std::size_t tasks, double time, const Task& task) {
   }
 }
 
-bool BodyEvaluator::evaluate(const RequestView& request, const States& states, const CurrentWater& water,
+bool BodyEvaluator::evaluate(const RequestView& request, const States& states, const WaterState& water,
                              const Outputs& outputs, ServiceCounters& counters, Deadline deadline) {
   assert(request.size() == outputs.response.size() && states.size() <= kMaxStates);
   water_ = water;
@@ -172,8 +172,8 @@ void BodyEvaluator::evaluate_chunk(const RequestView& request, const States& sta
     const BodyState state = request.body(i);
     BodyOutcome outcome;
     Pending& pending = pending_[begin + result.pending];
-    switch (evaluate_cheaply(state, request.lead_time(), i, pending, outcome)) {
-      case Progress::kDone:
+    switch (evaluate_from_bounds(state, request.lead_time(), i, pending, outcome)) {
+      case EvaluationStep::kDone:
         if (has_loads_ && outcome.status == BodyStatus::kOk) {
           respond(pending, outcome, request, result.counters);
           break;
@@ -181,49 +181,49 @@ void BodyEvaluator::evaluate_chunk(const RequestView& request, const States& sta
         outputs_.response.set(i, to_wrench(state.body_id, outcome));
         add_to_counters(outcome, result.counters);
         break;
-      case Progress::kPending:
+      case EvaluationStep::kPending:
         ++result.pending;
         break;
-      case Progress::kRepeated:
+      case EvaluationStep::kRepeated:
         repeated_[begin + result.repeated++] = static_cast<std::uint32_t>(i);
         break;
     }
   }
 }
 
-BodyEvaluator::Progress BodyEvaluator::evaluate_cheaply(const BodyState& state, double lead_time,
-                                                        std::size_t i, Pending& pending,
-                                                        BodyOutcome& outcome) {
+BodyEvaluator::EvaluationStep BodyEvaluator::evaluate_from_bounds(const BodyState& state, double lead_time,
+                                                                  std::size_t i, Pending& pending,
+                                                                  BodyOutcome& outcome) {
   const std::optional<std::size_t> body = scene_->index_of(state.body_id, i);
   if (!body) {
     outcome.status = BodyStatus::kUnknownBody;
-    return Progress::kDone;
+    return EvaluationStep::kDone;
   }
   const ValidatedPose validated = validate_pose(state, lead_time);
   if (validated.status != BodyStatus::kOk) {
     outcome.status = validated.status;
     outcome.quaternion_normalised = validated.quaternion_normalised;
-    return Progress::kDone;
+    return EvaluationStep::kDone;
   }
   if (checks_bodies_) {
     outcome.status = check_body(*body, state);
-    if (outcome.status != BodyStatus::kOk) return Progress::kDone;
+    if (outcome.status != BodyStatus::kOk) return EvaluationStep::kDone;
   }
   if (water_.at_rest == nullptr) {
     outcome.status = BodyStatus::kNoSea;
-    return Progress::kDone;
+    return EvaluationStep::kDone;
   }
   if (water_.waves != nullptr && std::abs(lead_time) > kMaxLeadTimeInWaves) {
     outcome.status = BodyStatus::kOutOfRange;
-    return Progress::kDone;
+    return EvaluationStep::kDone;
   }
-  if (!mark_first(last_[*body].request, request_number_)) return Progress::kRepeated;
-  const bool done = evaluate_cheaply(validated, *body, outcome);
-  if (done && !has_loads_) return Progress::kDone;
+  if (!mark_first(last_[*body].request, request_number_)) return EvaluationStep::kRepeated;
+  const bool done = evaluate_from_bounds(validated, *body, outcome);
+  if (done && !has_loads_) return EvaluationStep::kDone;
   pending = {.state = static_cast<std::uint32_t>(i),
              .body = static_cast<std::uint32_t>(*body),
              .quaternion_normalised = validated.quaternion_normalised};
-  return done ? Progress::kDone : Progress::kPending;
+  return done ? EvaluationStep::kDone : EvaluationStep::kPending;
 }
 
 BodyStatus BodyEvaluator::check_body(std::size_t body, const BodyState& state) const {
@@ -234,7 +234,8 @@ BodyStatus BodyEvaluator::check_body(std::size_t body, const BodyState& state) c
   return is_unknown ? BodyStatus::kBadCondition : BodyStatus::kOk;
 }
 
-bool BodyEvaluator::evaluate_cheaply(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome) {
+bool BodyEvaluator::evaluate_from_bounds(const ValidatedPose& validated, std::size_t body,
+                                         BodyOutcome& outcome) {
   LastPose& last = last_[body];
   const PoseBits pose = pose_bits(validated.pose);
   const bool unchanged = last.cached != Cached::kNothing && equal_branch_free(last.pose, pose);
@@ -247,7 +248,7 @@ bool BodyEvaluator::evaluate_cheaply(const ValidatedPose& validated, std::size_t
   const BodyKind& kind = kinds_[kind_of_[body]];
   last.pose = pose;
   last.cached = Cached::kNothing;
-  if (!try_evaluate_from_bounds(*kind.example, kind.submerged, water_, validated, outcome)) {
+  if (!try_evaluate_from_bounds(*kind.representative, kind.submerged, water_, validated, outcome)) {
     return false;
   }
   outcome.unchanged = unchanged;
@@ -297,10 +298,10 @@ void BodyEvaluator::compute_group(std::span<const std::uint32_t> order, const Re
   std::array<BuoyancyResult, kGroup> results;
   for (std::size_t i = 0; i < order.size(); ++i) {
     const Pending& pending = pending_[order[i]];
-    const Body& example = example_of(pending.body);
-    queries[i] = {.solver = &example.solver,
+    const Body& representative = representative_of(pending.body);
+    queries[i] = {.solver = &representative.solver,
                   .pose = to_pose(last_[pending.body].pose),
-                  .reference_B = example.reference_B};
+                  .reference_B = representative.reference_B};
   }
   buoyancy(std::span(queries).first(order.size()), *water_.at_rest, std::span(results).first(order.size()));
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -310,9 +311,9 @@ void BodyEvaluator::compute_group(std::span<const std::uint32_t> order, const Re
 }
 
 void BodyEvaluator::compute(const Pending& pending, const RequestView& request, ServiceCounters& counters) {
-  const Body& example = example_of(pending.body);
-  WaveBuoyancyResult computed = buoyancy_of(example.solver, *example.prepared_mesh, water_,
-                                            to_pose(last_[pending.body].pose), example.reference_B);
+  const Body& representative = representative_of(pending.body);
+  WaveBuoyancyResult computed = buoyancy_of(representative.solver, *representative.prepared_mesh, water_,
+                                            to_pose(last_[pending.body].pose), representative.reference_B);
   set_result(pending, computed, request, counters);
 }
 
@@ -320,7 +321,7 @@ void BodyEvaluator::set_result(const Pending& pending, WaveBuoyancyResult& compu
                                const RequestView& request, ServiceCounters& counters) {
   double flooded_volume = 0.0;
   if (const BodyCondition* inside = condition(pending.body)) {
-    flooded_volume = add_subdivision_load(example_of(pending.body), inside, water_,
+    flooded_volume = add_subdivision_load(representative_of(pending.body), inside, water_,
                                           to_pose(last_[pending.body].pose), computed);
   }
   counters.wave_patches += computed.patches;
@@ -355,7 +356,7 @@ bool BodyEvaluator::add_loads(const Pending& pending, const BodyOutcome& buoyanc
   if (body.hydrodynamics == nullptr) {
     if (body.loads) {
       const Pose pose = to_pose(last_[pending.body].pose);
-      set_loads(pending.state, to_loads(body, wrench, water_motion(water_, current_W, pose.p_WB)));
+      set_loads(pending.state, to_loads(body, wrench, flow_at_body(water_, current_W, pose.p_WB)));
     }
     return buoyancy.unchanged;
   }
@@ -387,7 +388,7 @@ void BodyEvaluator::evaluate_repeated(const RequestView& request, std::size_t i,
                         .body = static_cast<std::uint32_t>(body),
                         .quaternion_normalised = validated.quaternion_normalised};
   BodyOutcome outcome;
-  if (evaluate_cheaply(validated, body, outcome)) {
+  if (evaluate_from_bounds(validated, body, outcome)) {
     respond(pending, outcome, request, counters);
   } else {
     compute(pending, request, counters);

@@ -67,7 +67,7 @@ class BodyEvaluator {
   // all states were evaluated: after the deadline no other body is begun, except the first. Preconditions:
   // there are at most kMaxStates, and the outputs are of this request. Throws std::bad_alloc; then evaluate
   // them again.
-  bool evaluate(const RequestView& request, const States& states, const CurrentWater& water,
+  bool evaluate(const RequestView& request, const States& states, const WaterState& water,
                 const Outputs& outputs, ServiceCounters& counters, Deadline deadline = kNoDeadline);
   // The indices of the states that the last evaluate() has left, valid until the next one.
   std::span<const std::uint32_t> unfinished() const { return unfinished_; }
@@ -84,7 +84,8 @@ class BodyEvaluator {
   bool is_condition_known(std::size_t body) const { return !unknown_conditions_[body]; }
   // nullptr: the body has neither compartments nor tanks.
   const BodyCondition* condition(std::size_t body) const {
-    return conditions_.empty() || example_of(body).subdivision == nullptr ? nullptr : &conditions_[body];
+    return conditions_.empty() || representative_of(body).subdivision == nullptr ? nullptr
+                                                                                 : &conditions_[body];
   }
 
   unsigned thread_count() const { return thread_pool_.thread_count(); }
@@ -93,7 +94,7 @@ class BodyEvaluator {
  private:
   // What bodies with the same mesh, method, tolerance and reference point share.
   struct BodyKind {
-    const Body* example = nullptr;  // one of the bodies
+    const Body* representative = nullptr;  // one of the bodies
     FullySubmerged submerged;
     double estimated_time = 0.0;  // [ns], rough cost of a surface-piercing query
   };
@@ -127,7 +128,7 @@ class BodyEvaluator {
     std::size_t computed = 0;    // number of bodies that it computed, the first ones of its part
   };
 
-  enum class Progress {
+  enum class EvaluationStep {
     kDone,
     kPending,   // the body has to be computed
     kRepeated,  // the request contains the body twice, and another state of it was first
@@ -144,12 +145,12 @@ class BodyEvaluator {
   void evaluate_chunk(const RequestView& request, const States& states, std::size_t chunk);
   // state: the i-th of the request. Sets outcome if done; pending if that is the result,
   // and if done with kOk in a scene that has loads.
-  Progress evaluate_cheaply(const BodyState& state, double lead_time, std::size_t i, Pending& pending,
-                            BodyOutcome& outcome);
+  EvaluationStep evaluate_from_bounds(const BodyState& state, double lead_time, std::size_t i,
+                                      Pending& pending, BodyOutcome& outcome);
   // Of a state with a valid pose: what speaks against a wrench, or kOk. Only with checks_bodies_.
   BodyStatus check_body(std::size_t body, const BodyState& state) const;
   // False: neither the cached result nor the bounds suffice; the body has to be computed.
-  bool evaluate_cheaply(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome);
+  bool evaluate_from_bounds(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome);
   void compute_pending(const RequestView& request, ServiceCounters& counters, Deadline deadline);
   // Computes the bodies of a few elements of pending_ together. order: their indices.
   void compute_group(std::span<const std::uint32_t> order, const RequestView& request,
@@ -165,12 +166,12 @@ class BodyEvaluator {
   bool add_loads(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
                  BodyWrench& wrench);
   void set_loads(std::size_t state, const BodyLoads& loads);
-  const Body& example_of(std::size_t body) const { return *kinds_[kind_of_[body]].example; }
+  const Body& representative_of(std::size_t body) const { return *kinds_[kind_of_[body]].representative; }
   // Evaluates the i-th state, whose body another state of the request has, after that one.
   void evaluate_repeated(const RequestView& request, std::size_t i, ServiceCounters& counters);
 
   const Scene* scene_;
-  CurrentWater water_;  // of the current request
+  WaterState water_;  // of the current request
   ThreadPool thread_pool_;
   std::vector<BodyKind> kinds_;
   std::vector<std::uint32_t> kind_of_;     // by body: index into kinds_

@@ -13,7 +13,7 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 // [m^3], bound on the error of the submerged volume.
-double volume_error_bound(const Body& body, const CurrentWater& water, const BodyOutcome& outcome) {
+double volume_error_bound(const Body& body, const WaterState& water, const BodyOutcome& outcome) {
   const HydrostaticMesh& mesh = body.solver.mesh();
   const bool constant =
       outcome.result.immersion == Immersion::kSubmerged && body.solver.method() == Method::kHierarchical;
@@ -30,7 +30,7 @@ ImmersionFactor factor_within_unit(double value, double error) {
   return {inside, std::min(error, std::max(inside, 1.0 - inside))};
 }
 
-ImmersionFactor immersion_factor(ImmersionScaling scaling, const Body& body, const CurrentWater& water,
+ImmersionFactor immersion_factor(ImmersionScaling scaling, const Body& body, const WaterState& water,
                                  const Pose& pose, const BodyOutcome& outcome) {
   if (outcome.result.immersion == Immersion::kDry) return {0.0, 0.0};
   const HydrostaticMesh& mesh = body.solver.mesh();
@@ -98,8 +98,8 @@ BodyTwist twist_of(const BodyState& state) {
   return {to_vec3(state.linear_velocity), to_vec3(state.angular_velocity)};
 }
 
-WaterMotion water_motion(const CurrentWater& water, const Vec3& current_W, const Vec3& p_W) {
-  WaterMotion motion;
+FlowAtBody flow_at_body(const WaterState& water, const Vec3& current_W, const Vec3& p_W) {
+  FlowAtBody motion;
   motion.velocity_W = current_W;
   if (water.waves == nullptr) return motion;
   const WaterAtPoint point = water.waves->snapshot().at(p_W);
@@ -118,14 +118,14 @@ WaterMotion water_motion(const CurrentWater& water, const Vec3& current_W, const
   return motion;
 }
 
-HydrodynamicState hydrodynamic_state(const Body& body, const CurrentWater& water, const Vec3& current_W,
+HydrodynamicState hydrodynamic_state(const Body& body, const WaterState& water, const Vec3& current_W,
                                      const Pose& pose, const BodyTwist& twist, const BodyOutcome& outcome) {
   HydrodynamicState state;
   state.motion = {pose.q_WB.normalized().toRotationMatrix(), twist.velocity_W, twist.angular_velocity_W};
   const auto* const drag = body.hydrodynamics->drag_placement();
   const auto* const added = body.hydrodynamics->added_mass_placement();
   const auto water_at = [&](const Vec3& center_B) {
-    return water_motion(water, current_W, pose.p_WB + state.motion.R_WB * center_B);
+    return flow_at_body(water, current_W, pose.p_WB + state.motion.R_WB * center_B);
   };
   if (drag != nullptr) {
     state.at_drag.water = water_at(drag->center_B);
@@ -150,7 +150,7 @@ void add_hydrodynamic_load(const HydrodynamicLoad& load, BodyWrench& wrench) {
   if (!is_finite(wrench)) wrench = {.body_id = wrench.body_id, .status = BodyStatus::kOutOfRange};
 }
 
-BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const WaterMotion& at_origin) {
+BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const FlowAtBody& at_origin) {
   BodyLoads loads = buoyancy_alone(buoyancy);
   const HydrostaticMesh& mesh = body.solver.mesh();
   if (!mesh.is_open()) loads.immersion = std::clamp(buoyancy.submerged_volume / mesh.volume, 0.0, 1.0);

@@ -19,11 +19,11 @@ BodyTwist twist_of(const BodyState& state);
 
 // The undisturbed water at a point: the current, and the waves if there are any. Precondition: the water is
 // known. Complexity: O(components) in waves.
-WaterMotion water_motion(const CurrentWater& water, const Vec3& current_W, const Vec3& p_W);
+FlowAtBody flow_at_body(const WaterState& water, const Vec3& current_W, const Vec3& p_W);
 
 // The state of a body in the water, as the load formulas need it. outcome: its buoyancy at the pose, kOk.
 // No heap allocation. Complexity: O(1) in water at rest where the volume scales the coefficients.
-HydrodynamicState hydrodynamic_state(const Body& body, const CurrentWater& water, const Vec3& current_W,
+HydrodynamicState hydrodynamic_state(const Body& body, const WaterState& water, const Vec3& current_W,
                                      const Pose& pose, const BodyTwist& twist, const BodyOutcome& outcome);
 
 // Adds the body's drag and added mass to its wrench, and what they contribute to its bounds. Sets the status
@@ -35,6 +35,6 @@ void add_hydrodynamic_load(const HydrodynamicLoad& load, BodyWrench& wrench);
 BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const HydrodynamicState& state,
                    const HydrodynamicLoad& load);
 // The same for a body without a hydrodynamic model. at_origin: the water at the body's origin.
-BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const WaterMotion& at_origin);
+BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const FlowAtBody& at_origin);
 
 }  // namespace buoyancy

@@ -374,7 +374,7 @@ bool RequestHandler::advance(const RequestView& request, Session& session, const
   return session.last_hydrostatics.empty() || compute_hydrostatics(request, session, deadline);
 }
 
-bool RequestHandler::evaluate_part(const RequestView& request, Session& session, const CurrentWater& water,
+bool RequestHandler::evaluate_part(const RequestView& request, Session& session, const WaterState& water,
                                    Deadline deadline) {
   Work& work = session.work;
   const std::size_t count = std::min(request.size() - work.next, BodyEvaluator::kMaxStates);

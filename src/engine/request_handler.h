@@ -224,7 +224,7 @@ class RequestHandler {
   // Works on a request until it is complete, or until the deadline. Returns whether it is complete.
   bool advance(const RequestView& request, Session& session, const WaterAtTime::Change& now,
                Deadline deadline);
-  bool evaluate_part(const RequestView& request, Session& session, const CurrentWater& water,
+  bool evaluate_part(const RequestView& request, Session& session, const WaterState& water,
                      Deadline deadline);
   bool compute_hydrostatics(const RequestView& request, Session& session, Deadline deadline);
   void apply_conditions(std::int64_t utime);

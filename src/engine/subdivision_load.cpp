@@ -73,7 +73,7 @@ Tank tank_at(const Subdivision& subdivision, const BodyCondition* condition, std
 
 }  // namespace
 
-double add_subdivision_load(const Body& body, const BodyCondition* condition, const CurrentWater& water,
+double add_subdivision_load(const Body& body, const BodyCondition* condition, const WaterState& water,
                             const Pose& pose, WaveBuoyancyResult& sum) {
   BuoyancyResult& result = sum.result;
   if (result.status != BuoyancyStatus::kOk) return 0.0;

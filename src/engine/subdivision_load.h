@@ -14,7 +14,7 @@ namespace buoyancy {
 // where a sum is beyond double's range. Returns the volume that the compartments take from the displaced one
 // [m^3]. Preconditions: the body has a subdivision, and the water is known. Complexity: a query per
 // compartment, and some seven displaced volumes per tank. Heap: as buoyancy_of().
-double add_subdivision_load(const Body& body, const BodyCondition* condition, const CurrentWater& water,
+double add_subdivision_load(const Body& body, const BodyCondition* condition, const WaterState& water,
                             const Pose& pose, WaveBuoyancyResult& sum);
 
 // What hydrostatics() returns for a body without compartments and tanks: of the whole, in water at rest. The

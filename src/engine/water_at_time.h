@@ -28,7 +28,7 @@ class WaterAtTime {
   std::shared_ptr<const SeaPeriod> sea_at(std::int64_t utime) const;
 
   struct Change {
-    CurrentWater water;
+    WaterState water;
     bool changed = false;  // is it another water than that of the last call?
   };
   // Moves to this time. utime: [us]; lead_time: [s], added to it; one that is not finite counts as 0. The

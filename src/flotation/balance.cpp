@@ -23,7 +23,7 @@ Balance::Balance(const FloatingBody& body, const Water& water)
     : body_(&body), water_(&water), target_volume_(body.total_mass() / water.density) {
   const double lever = body.reach() + (body.center_of_mass_B() - body.center_B()).norm();
   double area = 0.0;
-  for (const FloatingBody::Term& term : body.terms()) area += term.placed.mesh->area;
+  for (const FloatingBody::SignedVolume& volume : body.volumes()) area += volume.placed.mesh->area;
   gradient_rounding_ = (water.density * body.volume_tolerance() + body.liquid_tolerance()) * lever;
   // Rounding of a volume and of a mass, each at its lever.
   energy_rounding_ = gradient_rounding_ + 8.0 * kEpsilon * body.total_mass() * lever;

@@ -9,14 +9,14 @@
 namespace buoyancy {
 namespace {
 
-using Term = FloatingBody::Term;
+using SignedVolume = FloatingBody::SignedVolume;
 
 // The plane in the mesh's frame, about the mesh's centre.
-WaterPlane plane_of(const Term& term, const WaterPlane& plane) {
-  if (!term.is_turned && term.offset_B.isZero(0.0)) return plane;
+WaterPlane plane_of(const SignedVolume& volume, const WaterPlane& plane) {
+  if (!volume.is_turned && volume.offset_B.isZero(0.0)) return plane;
   WaterPlane moved;
-  moved.up_B = term.R_B.transpose() * plane.up_B;
-  moved.h_c = plane.h_c - plane.up_B.dot(term.offset_B);
+  moved.up_B = volume.R_B.transpose() * plane.up_B;
+  moved.h_c = plane.h_c - plane.up_B.dot(volume.offset_B);
   return moved;
 }
 
@@ -24,45 +24,48 @@ WaterPlane plane_of(const Term& term, const WaterPlane& plane) {
 
 DisplacedSum displaced_sum(const FloatingBody& body, const WaterPlane& plane) {
   DisplacedSum sum;
-  for (const Term& term : body.terms()) {
-    const Displacement displaced = hierarchical(*term.placed.mesh, plane_of(term, plane));
-    sum.volume += term.placed.factor * displaced.volume;
-    sum.moment += term.placed.factor * (term.R_B * displaced.moment + displaced.volume * term.offset_B);
+  for (const SignedVolume& volume : body.volumes()) {
+    const Displacement displaced = hierarchical(*volume.placed.mesh, plane_of(volume, plane));
+    sum.volume += volume.placed.signed_permeability * displaced.volume;
+    sum.moment += volume.placed.signed_permeability *
+                  (volume.R_B * displaced.moment + displaced.volume * volume.offset_B);
   }
   return sum;
 }
 
 DisplacedBounds displaced_bounds(const FloatingBody& body, const WaterPlane& plane) {
   DisplacedBounds bounds;
-  for (const Term& term : body.terms()) {
-    const HydrostaticMesh& mesh = *term.placed.mesh;
-    const Displacement displaced = hierarchical(mesh, plane_of(term, plane));
-    const double volume =
-        std::abs(term.placed.factor) * (mesh.rounding_bound() + displaced.rounding + term.plane_rounding);
-    const Vec3 reference = term.R_B.transpose() * (body.center_of_mass_B() - term.placed.position_B);
-    bounds.volume += volume;
-    bounds.moment += volume * mesh.max_lever_arm(reference);
+  for (const SignedVolume& volume : body.volumes()) {
+    const HydrostaticMesh& mesh = *volume.placed.mesh;
+    const Displacement displaced = hierarchical(mesh, plane_of(volume, plane));
+    const double error = std::abs(volume.placed.signed_permeability) *
+                         (mesh.rounding_bound() + displaced.rounding + volume.plane_rounding);
+    const Vec3 reference = volume.R_B.transpose() * (body.center_of_mass_B() - volume.placed.position_B);
+    bounds.volume += error;
+    bounds.moment += error * mesh.max_lever_arm(reference);
   }
   return bounds;
 }
 
 ImmersedPart immersed_sum(const FloatingBody& body, const WaterPlane& plane) {
   ImmersedPart sum;
-  for (const Term& term : body.terms()) {
-    ImmersedPart part = immersed_part(*term.placed.mesh, plane_of(term, plane));
-    if (term.is_turned) {
-      part.moments = part.moments.rotated(term.R_B);
-      part.point = term.R_B * part.point;
+  for (const SignedVolume& volume : body.volumes()) {
+    ImmersedPart part = immersed_part(*volume.placed.mesh, plane_of(volume, plane));
+    if (volume.is_turned) {
+      part.moments = part.moments.rotated(volume.R_B);
+      part.point = volume.R_B * part.point;
     }
-    add_scaled(part, term.offset_B, term.placed.factor, sum);
+    add_scaled(part, volume.offset_B, volume.placed.signed_permeability, sum);
   }
   return sum;
 }
 
 double wetted_area_sum(const FloatingBody& body, const WaterPlane& plane) {
   double area = 0.0;
-  for (const Term& term : body.terms()) {
-    if (term.placed.factor > 0.0) area += wetted_area(*term.placed.mesh, plane_of(term, plane));
+  for (const SignedVolume& volume : body.volumes()) {
+    if (volume.placed.signed_permeability > 0.0) {
+      area += wetted_area(*volume.placed.mesh, plane_of(volume, plane));
+    }
   }
   return area;
 }
@@ -99,11 +102,11 @@ double liquid_moment_bound(const FloatingBody& body, const Vec3& point_B) {
 Waterline waterline_sum(const FloatingBody& body, const WaterPlane& plane, const Vec3& u) {
   const Vec3 v = plane.up_B.cross(u);
   Waterline sum;
-  for (const Term& term : body.terms()) {
-    const Mat3 R = term.R_B.transpose();
-    const Waterline line = waterline(*term.placed.mesh, plane_of(term, plane),
-                                     {.u = R * u, .v = R * v, .origin = R * -term.offset_B});
-    const double factor = term.placed.factor;
+  for (const SignedVolume& volume : body.volumes()) {
+    const Mat3 R = volume.R_B.transpose();
+    const Waterline line = waterline(*volume.placed.mesh, plane_of(volume, plane),
+                                     {.u = R * u, .v = R * v, .origin = R * -volume.offset_B});
+    const double factor = volume.placed.signed_permeability;
     sum.area += factor * line.area;
     sum.u += factor * line.u;
     sum.v += factor * line.v;
@@ -121,9 +124,9 @@ Waterline waterline_sum(const FloatingBody& body, const WaterPlane& plane, const
 
 bool is_boundary_wet(const FloatingBody& body, const WaterPlane& plane) {
   if (!body.is_open()) return false;
-  const Term& term = body.terms().front();
-  const WaterPlane of_mesh = plane_of(term, plane);
-  const HydrostaticMesh& mesh = *term.placed.mesh;
+  const SignedVolume& volume = body.volumes().front();
+  const WaterPlane of_mesh = plane_of(volume, plane);
+  const HydrostaticMesh& mesh = *volume.placed.mesh;
   return std::any_of(mesh.boundary_vertices.begin(), mesh.boundary_vertices.end(),
                      [&](std::int32_t i) { return of_mesh.height(mesh.vertex(i)) < 0.0; });
 }
@@ -131,17 +134,17 @@ bool is_boundary_wet(const FloatingBody& body, const WaterPlane& plane) {
 HeightRange height_range(const FloatingBody& body, const Vec3& up_B) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   HeightRange range{kInfinity, -kInfinity};
-  for (const Term& term : body.terms()) {
-    const HydrostaticMesh& mesh = *term.placed.mesh;
-    const Vec3 up = term.R_B.transpose() * up_B;
-    const double middle = up_B.dot(term.offset_B) + 0.5 * up.dot(mesh.box_min + mesh.box_max);
+  for (const SignedVolume& volume : body.volumes()) {
+    const HydrostaticMesh& mesh = *volume.placed.mesh;
+    const Vec3 up = volume.R_B.transpose() * up_B;
+    const double middle = up_B.dot(volume.offset_B) + 0.5 * up.dot(mesh.box_min + mesh.box_max);
     const double half = 0.5 * up.cwiseAbs().dot(mesh.box_max - mesh.box_min) + 1e-9 * mesh.diagonal;
     range.low = std::min(range.low, -(middle + half));
     range.high = std::max(range.high, -(middle - half));
     if (!mesh.is_open()) continue;
     double lowest = kInfinity;
     for (const std::int32_t i : mesh.boundary_vertices) {
-      lowest = std::min(lowest, up_B.dot(term.offset_B) + up.dot(mesh.vertex(i)));
+      lowest = std::min(lowest, up_B.dot(volume.offset_B) + up.dot(mesh.vertex(i)));
     }
     range.low = -lowest + 1e-12 * mesh.diagonal;
   }

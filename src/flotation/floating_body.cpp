@@ -21,8 +21,9 @@ std::optional<Error> fault_of(const PlacedMesh& placed, std::size_t count) {
     error.hint = "Prepare the mesh with WithTree::kYes";
     return error;
   }
-  if (!(placed.factor == 1.0 || (placed.factor >= -1.0 && placed.factor < 0.0))) {
-    error.actual = "factor " + format_shortest(placed.factor);
+  if (!(placed.signed_permeability == 1.0 ||
+        (placed.signed_permeability >= -1.0 && placed.signed_permeability < 0.0))) {
+    error.actual = "factor " + format_shortest(placed.signed_permeability);
     error.expected = "1 for what displaces water, or minus a permeability between 0 and 1";
     error.cause = "the sign of a permeability";
     return error;
@@ -77,24 +78,24 @@ Expected<FloatingBody> FloatingBody::make(std::span<const PlacedMesh> meshes, do
   for (const PlacedMesh& placed : meshes) {
     if (const std::optional<Error> fault = fault_of(placed, meshes.size())) return make_error(*fault);
     const HydrostaticMesh& mesh = *placed.mesh;
-    Term term{.placed = placed};
-    term.placed.orientation_B.normalize();
-    term.R_B = term.placed.orientation_B.toRotationMatrix();
-    term.is_turned = term.placed.orientation_B.vec().norm() > 0.0;
-    if (!term.is_turned) term.R_B.setIdentity();
-    const Vec3 center_B = term.R_B * mesh.center_B + placed.position_B;
-    if (body.terms_.empty()) body.center_B_ = center_B;
-    term.offset_B = (term.R_B * mesh.center_B - body.center_B_) + placed.position_B;
-    const bool is_moved = term.is_turned || !term.offset_B.isZero(0.0) || !placed.position_B.isZero(0.0);
-    const double distance = mesh.diagonal + term.offset_B.norm() + placed.position_B.norm();
-    if (is_moved) term.plane_rounding = 4.0 * kEpsilon * mesh.area * distance;
-    body.terms_.push_back(term);
+    SignedVolume volume{.placed = placed};
+    volume.placed.orientation_B.normalize();
+    volume.R_B = volume.placed.orientation_B.toRotationMatrix();
+    volume.is_turned = volume.placed.orientation_B.vec().norm() > 0.0;
+    if (!volume.is_turned) volume.R_B.setIdentity();
+    const Vec3 center_B = volume.R_B * mesh.center_B + placed.position_B;
+    if (body.volumes_.empty()) body.center_B_ = center_B;
+    volume.offset_B = (volume.R_B * mesh.center_B - body.center_B_) + placed.position_B;
+    const bool is_moved = volume.is_turned || !volume.offset_B.isZero(0.0) || !placed.position_B.isZero(0.0);
+    const double distance = mesh.diagonal + volume.offset_B.norm() + placed.position_B.norm();
+    if (is_moved) volume.plane_rounding = 4.0 * kEpsilon * mesh.area * distance;
+    body.volumes_.push_back(volume);
 
-    displaces = displaces || placed.factor > 0.0;
+    displaces = displaces || placed.signed_permeability > 0.0;
     body.is_open_ = body.is_open_ || mesh.is_open();
-    body.volume_ += placed.factor * mesh.volume;
-    body.volume_tolerance_ += std::abs(placed.factor) * mesh.volume_tolerance();
-    body.reach_ = std::max(body.reach_, term.offset_B.norm() + mesh.max_lever_arm(mesh.center_B));
+    body.volume_ += placed.signed_permeability * mesh.volume;
+    body.volume_tolerance_ += std::abs(placed.signed_permeability) * mesh.volume_tolerance();
+    body.reach_ = std::max(body.reach_, volume.offset_B.norm() + mesh.max_lever_arm(mesh.center_B));
   }
   if (!displaces) {
     return make_error({.subject = "floating body",
@@ -151,10 +152,10 @@ std::optional<FloatingState> floating_state(const FloatingBody& body, const Pose
 
 double lowest_along(const FloatingBody& body, const Vec3& up_B) {
   double lowest = std::numeric_limits<double>::infinity();
-  for (const FloatingBody::Term& term : body.terms()) {
-    if (term.placed.factor < 0.0) continue;
-    const Vec3 up = term.R_B.transpose() * up_B;
-    lowest = std::min(lowest, up_B.dot(term.offset_B) + lowest_vertex(*term.placed.mesh->tree, up));
+  for (const FloatingBody::SignedVolume& volume : body.volumes()) {
+    if (volume.placed.signed_permeability < 0.0) continue;
+    const Vec3 up = volume.R_B.transpose() * up_B;
+    lowest = std::min(lowest, up_B.dot(volume.offset_B) + lowest_vertex(*volume.placed.mesh->tree, up));
   }
   return lowest;
 }

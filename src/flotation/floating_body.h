@@ -24,13 +24,14 @@ struct PlacedMesh {
   const HydrostaticMesh* mesh = nullptr;                              // with its tree; outlives the body
   Vec3 position_B = Vec3::Zero();                                     // [m], of the mesh's origin in B
   Eigen::Quaterniond orientation_B = Eigen::Quaterniond::Identity();  // x_B = orientation x + position
-  double factor = 1.0;  // 1: displaces water; minus its permeability: a compartment open to the sea
+  double signed_permeability =
+      1.0;  // 1: displaces water; minus its permeability: a compartment open to the sea
 };
 
 class FloatingBody {
  public:
   // One of the meshes, as the sums need it.
-  struct Term {
+  struct SignedVolume {
     PlacedMesh placed;
     Mat3 R_B = Mat3::Identity();   // of the orientation
     Vec3 offset_B = Vec3::Zero();  // [m], from the body's center_B() to the mesh's centre
@@ -44,7 +45,7 @@ class FloatingBody {
   static Expected<FloatingBody> make(std::span<const PlacedMesh> meshes, double mass,
                                      const Vec3& center_of_mass_B, std::span<const Tank> tanks = {});
 
-  const std::vector<Term>& terms() const { return terms_; }
+  const std::vector<SignedVolume>& volumes() const { return volumes_; }
   const std::vector<Tank>& tanks() const { return tanks_; }
   double mass() const { return mass_; }                               // [kg], without liquids
   const Vec3& center_of_mass_B() const { return center_of_mass_B_; }  // [m], likewise
@@ -61,7 +62,7 @@ class FloatingBody {
  private:
   FloatingBody() = default;
 
-  std::vector<Term> terms_;
+  std::vector<SignedVolume> volumes_;
   std::vector<Tank> tanks_;
   double mass_ = 0.0;
   double total_mass_ = 0.0;

@@ -32,8 +32,8 @@ Expected<HydrostaticTable> HydrostaticTable::make(const FloatingBody& body, cons
       options.forward_perpendicular ? *options.forward_perpendicular : -end_along(-axes.forward_B);
   table.midship_ = 0.5 * (aft + forward);
   table.lpp_ = forward - aft;
-  for (const FloatingBody::Term& term : body.terms()) {
-    table.waterplane_tolerance_ += 64.0 * std::numeric_limits<double>::epsilon() * term.placed.mesh->area;
+  for (const FloatingBody::SignedVolume& volume : body.volumes()) {
+    table.waterplane_tolerance_ += 64.0 * std::numeric_limits<double>::epsilon() * volume.placed.mesh->area;
   }
   if (!std::isfinite(table.keel_) || !std::isfinite(table.lpp_) || !(table.lpp_ > 0.0)) {
     return make_error({.subject = "hydrostatic table",
@@ -50,11 +50,11 @@ Expected<HydrostaticTable> HydrostaticTable::make(const FloatingBody& body, cons
 void HydrostaticTable::cut_midship_section() {
   const Vec3& forward = axes_.forward_B;
   const Vec3 port = axes_.port_B();
-  for (const FloatingBody::Term& term : body_->terms()) {
-    const HydrostaticMesh& mesh = *term.placed.mesh;
-    const Vec3 center_B = body_->center_B() + term.offset_B;
+  for (const FloatingBody::SignedVolume& volume : body_->volumes()) {
+    const HydrostaticMesh& mesh = *volume.placed.mesh;
+    const Vec3 center_B = body_->center_B() + volume.offset_B;
     const auto corner = [&](std::int32_t i) {
-      const Vec3 x_B = center_B + term.R_B * mesh.vertex(i);
+      const Vec3 x_B = center_B + volume.R_B * mesh.vertex(i);
       return ClipVertex<double>{Point<double>::from(Vec3(port.dot(x_B), axes_.up_B.dot(x_B), 0.0)),
                                 forward.dot(x_B) - midship_};
     };
@@ -70,7 +70,8 @@ void HydrostaticTable::cut_midship_section() {
         const ClipVertex<double> point = p.wet() ? intersect_edge(p, other) : intersect_edge(other, p);
         return Eigen::Vector2d(point.y.x, point.y.y);
       };
-      SectionEdge edge{cut(corners[(first + 1) % 3]), cut(corners[(first + 2) % 3]), term.placed.factor};
+      SectionEdge edge{cut(corners[(first + 1) % 3]), cut(corners[(first + 2) % 3]),
+                       volume.placed.signed_permeability};
       // The aft part is counter-clockwise seen from outside, and the section lies to the other side.
       if (p.wet()) std::swap(edge.from, edge.to);
       section_.push_back(edge);
@@ -96,7 +97,7 @@ double HydrostaticTable::immersed_section(double draft) const {
     } else if (to.y() > level) {
       to = at_level();
     }
-    area += edge.factor * 0.5 * ((level - from.y()) + (level - to.y())) * (to.x() - from.x());
+    area += edge.signed_permeability * 0.5 * ((level - from.y()) + (level - to.y())) * (to.x() - from.x());
   }
   return area;
 }

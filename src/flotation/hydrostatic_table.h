@@ -84,7 +84,7 @@ class HydrostaticTable {
   // B's origin.
   struct SectionEdge {
     Eigen::Vector2d from, to;
-    double factor = 1.0;  // of the mesh
+    double signed_permeability = 1.0;  // of the mesh
   };
 
   HydrostaticTable(const FloatingBody& body, const Water& water) : body_(&body), water_(water) {}

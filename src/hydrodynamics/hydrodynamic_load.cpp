@@ -17,7 +17,7 @@ struct Magnitudes {
 };
 
 // center_distance: [m], from B's origin.
-Magnitudes magnitudes_of(const BodyMotion& motion, double center_distance, const WaterMotion& water) {
+Magnitudes magnitudes_of(const BodyMotion& motion, double center_distance, const FlowAtBody& water) {
   Magnitudes m;
   m.w = motion.angular_velocity_W.norm();
   m.v = motion.velocity_W.norm() + m.w * center_distance + water.velocity_W.norm();

@@ -20,7 +20,7 @@
 namespace buoyancy {
 
 // The undisturbed water at a point.
-struct WaterMotion {
+struct FlowAtBody {
   Vec3 velocity_W = Vec3::Zero();      // [m/s]
   Vec3 acceleration_W = Vec3::Zero();  // [m/s^2]
   double velocity_error = 0.0;         // [m/s], bound on the norm of the error
@@ -41,7 +41,7 @@ struct ImmersionFactor {
 
 // The surroundings of one set of coefficients.
 struct Surroundings {
-  WaterMotion water;  // at the centre
+  FlowAtBody water;  // at the centre
   ImmersionFactor immersion;
 };
 

@@ -88,7 +88,7 @@ class RangeEvaluation {
     if (outcome.status == BodyStatus::kOk && !water_.is_known) outcome.status = BodyStatus::kNoSea;
     if (outcome.status != BodyStatus::kOk) return store(to_wrench(body_.id, outcome), wrenches_, i);
 
-    const CurrentWater now{&water_.at_rest, sea_.at(poses_.utime(i))};
+    const WaterState now{&water_.at_rest, sea_.at(poses_.utime(i))};
     if (try_evaluate_from_bounds(body_, submerged_, now, validated, outcome)) {
       return complete(state, validated.pose, now, outcome, i);
     }
@@ -124,7 +124,7 @@ class RangeEvaluation {
   }
 
   // Adds the loads of motion to a buoyant wrench, and stores it.
-  void complete(const BodyState& state, const Pose& pose, const CurrentWater& now, const BodyOutcome& outcome,
+  void complete(const BodyState& state, const Pose& pose, const WaterState& now, const BodyOutcome& outcome,
                 std::size_t i) {
     BodyWrench wrench = to_wrench(body_.id, outcome);
     if (outcome.status == BodyStatus::kOk && (body_.hydrodynamics != nullptr || !loads_.empty())) {
@@ -133,10 +133,10 @@ class RangeEvaluation {
     store(wrench, wrenches_, i);
   }
 
-  void add_loads(const BodyTwist& twist, const Pose& pose, const CurrentWater& now,
-                 const BodyOutcome& outcome, std::size_t i, BodyWrench& wrench) {
+  void add_loads(const BodyTwist& twist, const Pose& pose, const WaterState& now, const BodyOutcome& outcome,
+                 std::size_t i, BodyWrench& wrench) {
     if (body_.hydrodynamics == nullptr) {
-      loads_[i] = to_loads(body_, wrench, water_motion(now, water_.current_W, pose.p_WB));
+      loads_[i] = to_loads(body_, wrench, flow_at_body(now, water_.current_W, pose.p_WB));
       return;
     }
     // A dry body has neither drag nor added mass.

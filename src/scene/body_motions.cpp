@@ -152,7 +152,7 @@ class LoadedBody {
     if (compartments_.empty()) return sum;
     Vec3 moment = sum.volume * sum.lever_B;
     for (const PlacedMesh& compartment : compartments_) {
-      const double lost = -compartment.factor * compartment.mesh->volume;
+      const double lost = -compartment.signed_permeability * compartment.mesh->volume;
       sum.volume -= lost;
       moment -= lost * lever_of(*compartment.mesh);
     }

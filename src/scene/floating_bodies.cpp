@@ -16,7 +16,9 @@ std::vector<PlacedMesh> open_compartments(const Body& body, const BodyCondition*
   for (std::size_t i = 0; i < given.flooded.size(); ++i) {
     const BodyCompartment& compartment = body.subdivision->compartments[i];
     const double factor = factor_of(compartment, given.flooded[i]);
-    if (factor < 0.0) meshes.push_back({.mesh = &compartment.prepared_mesh->mesh, .factor = factor});
+    if (factor < 0.0) {
+      meshes.push_back({.mesh = &compartment.prepared_mesh->mesh, .signed_permeability = factor});
+    }
   }
   return meshes;
 }

@@ -95,7 +95,7 @@ HydrodynamicMotion::Immersions HydrodynamicMotion::immersions(double displaced, 
 }
 
 void HydrodynamicMotion::take(const BodyWrench& wrench, const BodyState& sent, double lead_time,
-                              const CurrentWater& water, RigidBodyState& state) {
+                              const WaterState& water, RigidBodyState& state) {
   still_ = wrench;
   if (wrench.status != BodyStatus::kOk) return;
   const Pose pose = validate_pose(sent, lead_time).pose;
@@ -115,7 +115,7 @@ void HydrodynamicMotion::take(const BodyWrench& wrench, const BodyState& sent, d
   half_jump_.setZero();
   if (const auto* const added = body_->hydrodynamics->added_mass_placement()) {
     const Vec3 center_W = pose.p_WB + moving.motion.R_WB * added->center_B;
-    const Vec3 flow_W = water_motion(water, current_W_, center_W).velocity_W;
+    const Vec3 flow_W = flow_at_body(water, current_W_, center_W).velocity_W;
     if (taken_ && now.added_mass != immersion_.added_mass) {
       const Vec3 mean_flow_W = 0.5 * (flow_W_ + flow_W);
       const Vec6 before = relative_twist(state, mean_flow_W);

@@ -45,7 +45,7 @@ class HydrodynamicMotion {
 
   // Takes the wrench of a response to the state that was sent, evaluated lead_time later in this water, and
   // changes the velocities by S. The first wrench changes none.
-  void take(const BodyWrench& wrench, const BodyState& sent, double lead_time, const CurrentWater& water,
+  void take(const BodyWrench& wrench, const BodyState& sent, double lead_time, const WaterState& water,
             RigidBodyState& state);
 
   // As in integrator.h, with the wrench that was taken last. Preconditions: take() was called; finish_step()

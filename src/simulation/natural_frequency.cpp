@@ -46,9 +46,9 @@ struct AddedMass {
 };
 
 // What the water does to a body: with its compartments and tanks, if it has them.
-class WaterLoad {
+class WaterplaneStiffness {
  public:
-  WaterLoad(const HydrostaticMesh& mesh, const RigidBody& rigid, const Water& water)
+  WaterplaneStiffness(const HydrostaticMesh& mesh, const RigidBody& rigid, const Water& water)
       : mesh_(&mesh), rigid_(&rigid), water_(&water) {
     if (!rigid.contents) return;
     std::vector<PlacedMesh> meshes = rigid.contents->compartments;
@@ -80,7 +80,7 @@ class WaterLoad {
   std::optional<FloatingBody> loaded_;
 };
 
-double frequency_at(const WaterLoad& load, const HydrostaticMesh& mesh, const RigidBody& rigid,
+double frequency_at(const WaterplaneStiffness& load, const HydrostaticMesh& mesh, const RigidBody& rigid,
                     const std::optional<AddedMass>& added_mass, const RigidBodyState& state) {
   const std::optional<Hydrostatics> result = load.at(pose_of(rigid, state));
   if (!result) return 0.0;
@@ -166,7 +166,7 @@ HighestNaturalFrequency highest_natural_frequency(const Body& body, const RigidB
                    .value_or(0.0);
   }
 
-  const WaterLoad load(mesh, rigid, water);
+  const WaterplaneStiffness load(mesh, rigid, water);
   HighestNaturalFrequency highest;
   const auto consider = [&](const RigidBodyState& candidate, double draft) {
     const double frequency = frequency_at(load, mesh, rigid, added_mass, candidate);

@@ -172,7 +172,7 @@ void Simulation::accept(const WrenchResponse& latest) {
   assert(response.bodies.size() == bodies_.size());
   delay_ = static_cast<double>(step_number_ - response.id.seq) * options_.step;
   const bool wrenches_are_current = delay_ == 0.0 && options_.lead_time == 0.0;
-  CurrentWater water;
+  WaterState water;
   if (has_hydrodynamics_) water = waters_.move_to(response.id.utime, options_.lead_time).water;
   while (sent_.size() > 1 && sent_.front().id.seq < response.id.seq) sent_.pop_front();
   for (std::size_t i = 0; i < bodies_.size(); ++i) {

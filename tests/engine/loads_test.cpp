@@ -505,7 +505,7 @@ TEST(RequestHandlerWithLoads, BoundHasAllOfTheDragWhereContactIsUndecided) {
   EXPECT_GT(decided, 20);
 }
 
-TEST(WaterMotion, BoundsGrowWithDistanceSteepnessAndComponents) {
+TEST(FlowAtBody, BoundsGrowWithDistanceSteepnessAndComponents) {
   struct Errors {
     double velocity, acceleration;
   };
@@ -513,7 +513,7 @@ TEST(WaterMotion, BoundsGrowWithDistanceSteepnessAndComponents) {
     const Scene scene = scene_of("[water]\nlevel = " + format_shortest(level) + "\nwaves = [" + waves +
                                  "]\n[[body]]\nid = 1\nshape = { type = \"box\" }\n");
     WaterAtTime water(scene);
-    const WaterMotion motion = water_motion(water.move_to(kNow, 0.0).water, Vec3::Zero(), p_W);
+    const FlowAtBody motion = flow_at_body(water.move_to(kNow, 0.0).water, Vec3::Zero(), p_W);
     return Errors{motion.velocity_error, motion.acceleration_error};
   };
   const std::string wave = "{ type = \"regular\", height = 0.2, period = 3.0 }";

@@ -42,7 +42,7 @@ Evaluated evaluated(const Scene& scene, std::int32_t id, const Pose& pose,
                     const BodyCondition* condition = nullptr) {
   const Body& body = *scene.find(id);
   WaterAtTime water(scene);
-  const CurrentWater now = water.move_to(1'790'000'000'000'000, 0.0).water;
+  const WaterState now = water.move_to(1'790'000'000'000'000, 0.0).water;
   Evaluated result;
   evaluate(body, now, {.status = BodyStatus::kOk, .pose = pose}, result.outcome, condition);
   result.wrench = to_wrench(id, result.outcome);

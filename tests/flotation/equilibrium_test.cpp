@@ -40,9 +40,9 @@ void expect_balance(const Equilibrium& at, const FloatingBody& body, const Water
 void expect_equilibrium(const Equilibrium& at, const FloatingBody& body) {
   expect_balance(at, body, kWater);
   // The same from the wrench that the service computes.
-  const FloatingBody::Term& term = body.terms().front();
+  const FloatingBody::SignedVolume& volume = body.volumes().front();
   const BuoyancyResult wrench =
-      buoyancy(Solver(*term.placed.mesh, Method::kHierarchical), at.pose, kWater, body.center_of_mass_B());
+      buoyancy(Solver(*volume.placed.mesh, Method::kHierarchical), at.pose, kWater, body.center_of_mass_B());
   EXPECT_LE((wrench.force_W - body.mass() * kWater.gravity * kWater.up_W).norm(), at.force_bound);
   EXPECT_LE(wrench.torque_W.norm(), at.torque_bound);
 }

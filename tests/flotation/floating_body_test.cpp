@@ -80,7 +80,7 @@ TEST(FloatingBody, AddsTheBoundsOfItsMeshesAndTanks) {
         PlacedMesh{.mesh = &room,
                    .position_B = far + scale * distance * Vec3(0.2, 0.1, -0.1),
                    .orientation_B = Eigen::Quaterniond(0.8, 0.3, -0.4, 0.2),
-                   .factor = -0.6}};
+                   .signed_permeability = -0.6}};
     const std::array<Tank, 1> tanks{
         Tank{.mesh = &tank_mesh, .liquid_volume = 0.4 * tank_mesh.volume, .density = 900.0}};
     const Vec3 center_of_mass_B = far + scale * Vec3(0.5, -0.3, 0.2);
@@ -94,10 +94,10 @@ TEST(FloatingBody, AddsTheBoundsOfItsMeshesAndTanks) {
       const HydrostaticMesh& mesh = *placed.mesh;
       const Mat3 R = placed.orientation_B.normalized().toRotationMatrix();
       const double offset = (R * mesh.center_B + placed.position_B - center_B).norm();
-      const bool is_moved = distance > 0.0 || placed.factor < 0.0;
+      const bool is_moved = distance > 0.0 || placed.signed_permeability < 0.0;
       const double moved = is_moved ? mesh.diagonal + offset + placed.position_B.norm() : 0.0;
       const double bound =
-          std::abs(placed.factor) * (mesh.rounding_bound() + 4.0 * kEpsilon * mesh.area * moved);
+          std::abs(placed.signed_permeability) * (mesh.rounding_bound() + 4.0 * kEpsilon * mesh.area * moved);
       volume += bound;
       moment += bound * mesh.max_lever_arm(R.transpose() * (center_of_mass_B - placed.position_B));
     }
@@ -148,7 +148,7 @@ TEST(FloatingBody, WithFloodedCompartmentIsTheHullWithoutIt) {
   const HydrostaticMesh compartment = mesh_of(BoxShape{{2, 2, 1}, {1, 1, 1}});
   const HydrostaticMesh end = mesh_of(BoxShape{{2, 2, 1}, {1, 1, 1}});
   const std::array<PlacedMesh, 2> flooded{PlacedMesh{.mesh = &hull},
-                                          PlacedMesh{.mesh = &compartment, .factor = -1.0}};
+                                          PlacedMesh{.mesh = &compartment, .signed_permeability = -1.0}};
   const std::array<PlacedMesh, 2> cut{PlacedMesh{.mesh = &end, .position_B = Vec3(-2, 0, 0)},
                                       PlacedMesh{.mesh = &end, .position_B = Vec3(2, 0, 0)}};
   const FloatingBody body = FloatingBody::make(flooded, 4000.0, Vec3(0, 0, 0.1)).value();
@@ -169,8 +169,8 @@ TEST(FloatingBody, SinksToTheDraughtOfLostBuoyancy) {
   const HydrostaticMesh hull = mesh_of(BoxShape{{length, 20, 12}, {1, 1, 1}});
   const HydrostaticMesh compartment = mesh_of(BoxShape{{flooded_length, 20, 12}, {1, 1, 1}});
   for (const double permeability : {0.5, 0.85, 1.0}) {
-    const std::array<PlacedMesh, 2> meshes{PlacedMesh{.mesh = &hull},
-                                           PlacedMesh{.mesh = &compartment, .factor = -permeability}};
+    const std::array<PlacedMesh, 2> meshes{
+        PlacedMesh{.mesh = &hull}, PlacedMesh{.mesh = &compartment, .signed_permeability = -permeability}};
     const double draft = 6.0;
     const double mass = kWater.density * length * 20.0 * draft;
     const FloatingBody body = FloatingBody::make(meshes, mass, Vec3(0, 0, -3.0)).value();
@@ -196,12 +196,12 @@ TEST(FloatingBody, RejectsWhatIsNoBody) {
   EXPECT_TRUE(make({.mesh = &mesh}, 1.0));
   EXPECT_FALSE(make({.mesh = &mesh}, 0.0));
   EXPECT_FALSE(make({.mesh = &mesh}, std::nan("")));
-  EXPECT_FALSE(make({.mesh = &mesh, .factor = 0.5}, 1.0));
-  EXPECT_FALSE(make({.mesh = &mesh, .factor = -0.5}, 1.0));  // a compartment alone
+  EXPECT_FALSE(make({.mesh = &mesh, .signed_permeability = 0.5}, 1.0));
+  EXPECT_FALSE(make({.mesh = &mesh, .signed_permeability = -0.5}, 1.0));  // a compartment alone
   EXPECT_FALSE(make({.mesh = &without_tree}, 1.0));
   EXPECT_FALSE(make({}, 1.0));
   EXPECT_FALSE(FloatingBody::make({}, 1.0, Vec3::Zero()));
-  const auto error = make({.mesh = &mesh, .factor = 0.5}, 1.0).error();
+  const auto error = make({.mesh = &mesh, .signed_permeability = 0.5}, 1.0).error();
   EXPECT_NE(error.message().find("0.5"), std::string::npos) << error.message();
 }
 

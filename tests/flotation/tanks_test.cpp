@@ -96,7 +96,7 @@ TEST(FloatingBodyWithTanks, HasTheMetacentricHeightOfItsArms) {
 TEST(FloatingBodyWithTanks, RightsAlikeByLostBuoyancyAndAddedWeight) {
   const HydrostaticMesh hull = mesh_of(BoxShape{{20, 8, 4}});
   const HydrostaticMesh room = box_at({{4, 8, 3}}, {0.0, 0.0, -0.5});
-  const std::vector<PlacedMesh> lost{{.mesh = &hull}, {.mesh = &room, .factor = -1.0}};
+  const std::vector<PlacedMesh> lost{{.mesh = &hull}, {.mesh = &room, .signed_permeability = -1.0}};
   const double mass = 200e3;
   const FloatingBody by_lost_buoyancy = FloatingBody::make(lost, mass, {0, 0, -0.4}).value();
   for (const double degrees : {0.0, 5.0, 15.0, 30.0, 60.0}) {

@@ -43,7 +43,7 @@ LongVec6 true_load(const HydrodynamicCoefficients& coefficients, const Vec3& ref
   const Mat3T<long double> R_WB = state.motion.R_WB.cast<long double>();
   const auto in_B = [&](const Vec3& v_W) { return LongVec3(R_WB.transpose() * v_W.cast<long double>()); };
   const LongVec3 w = in_B(state.motion.angular_velocity_W);
-  const auto velocity = [&](const Vec3& center_B, const WaterMotion& water) {
+  const auto velocity = [&](const Vec3& center_B, const FlowAtBody& water) {
     const LongVec3 through_water_W =
         state.motion.velocity_W.cast<long double>() - water.velocity_W.cast<long double>();
     return LongVec3(R_WB.transpose() * through_water_W + w.cross(LongVec3(center_B.cast<long double>())));
@@ -61,7 +61,7 @@ LongVec6 true_load(const HydrodynamicCoefficients& coefficients, const Vec3& ref
   const LongVec6 drag_B = -drag.linear.cast<long double>() * nu -
                           drag.quadratic.cast<long double>() * LongVec6(nu.cwiseAbs().cwiseProduct(nu));
   const AddedMassCoefficients& added = *coefficients.added_mass;
-  const WaterMotion& water = state.at_added_mass.water;
+  const FlowAtBody& water = state.at_added_mass.water;
   const LongVec3 v = velocity(added.center_B, water);
   nu << v, w;
   const LongVec6 momentum = added.matrix.cast<long double>() * nu;

@@ -173,12 +173,12 @@ TEST(Subdivision, FloatsWithItsCompartmentsAndTanks) {
   const Body& body = scene.bodies()[0];
   const BodyMass mass{.mass = 2000.0, .center_of_mass_B = Vec3(0, 0, -0.1)};
   const FloatingBody floating = floating_body_of(body, body.prepared_mesh->mesh, mass).value();
-  ASSERT_EQ(floating.terms().size(), 2U) << "the hull and what is flooded";
-  EXPECT_EQ(floating.terms()[1].placed.factor, -0.45);
+  ASSERT_EQ(floating.volumes().size(), 2U) << "the hull and what is flooded";
+  EXPECT_EQ(floating.volumes()[1].placed.signed_permeability, -0.45);
   EXPECT_EQ(floating.total_mass(), 2200.0);
   const BodyCondition damaged{.flooded = {0.0, 1.0}, .liquid_volumes = {1.0}};
   const FloatingBody later = floating_body_of(body, body.prepared_mesh->mesh, mass, &damaged).value();
-  EXPECT_EQ(later.terms()[1].placed.factor, -1.0);
+  EXPECT_EQ(later.volumes()[1].placed.signed_permeability, -1.0);
   EXPECT_EQ(later.total_mass(), 2800.0);
 }
 

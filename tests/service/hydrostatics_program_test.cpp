@@ -500,9 +500,10 @@ TEST_F(HydrostaticsProgram, RejectsWrongArguments) {
 
 TEST(HydrostaticsPageData, DrawsEveryPartThatDisplaces) {
   const HydrostaticMesh mesh = make_hydrostatic_mesh({make_shape(BoxShape{{2, 1, 1}, {1, 1, 1}}), {}});
-  const std::vector<PlacedMesh> pontoons{{.mesh = &mesh, .position_B = Vec3(5, 2, 0)},
-                                         {.mesh = &mesh, .position_B = Vec3(5, -2, 0)},
-                                         {.mesh = &mesh, .position_B = Vec3(5, 2, 0), .factor = -0.25}};
+  const std::vector<PlacedMesh> pontoons{
+      {.mesh = &mesh, .position_B = Vec3(5, 2, 0)},
+      {.mesh = &mesh, .position_B = Vec3(5, -2, 0)},
+      {.mesh = &mesh, .position_B = Vec3(5, 2, 0), .signed_permeability = -0.25}};
   const Water water;
   const FloatingBody body = FloatingBody::make(pontoons, 1500.0, Vec3(5, 0, 0)).value();
   const PageSubject subject{.name = "pontoons", .body = &body, .water = &water, .axes = {}};

@@ -32,14 +32,14 @@ LoadRow to_row(const BodyLoads& loads) {
   return row;
 }
 
-CurrentWater water_of(const RowLoads& row, const Scene& scene, WaterAtTime& water) {
+WaterState water_of(const RowLoads& row, const Scene& scene, WaterAtTime& water) {
   if (!has_waves(scene)) return water.move_to(row.utime, row.lead_time).water;
-  return row.sea ? water.move_to(row.sea, row.utime, row.lead_time).water : CurrentWater{};
+  return row.sea ? water.move_to(row.sea, row.utime, row.lead_time).water : WaterState{};
 }
 
 }  // namespace
 
-RowEvaluation evaluate_row(const Body& body, const CurrentWater& water, const Vec3& current_W,
+RowEvaluation evaluate_row(const Body& body, const WaterState& water, const Vec3& current_W,
                            const BodyState& state, const ValidatedPose& pose,
                            const BodyCondition* condition) {
   BodyOutcome outcome;
@@ -57,7 +57,7 @@ RowEvaluation evaluate_row(const Body& body, const CurrentWater& water, const Ve
   BodyWrench& wrench = evaluation.wrench;
   if (!has_loads(body) || wrench.status != BodyStatus::kOk) return evaluation;
   if (body.hydrodynamics == nullptr) {
-    evaluation.loads = to_loads(body, wrench, water_motion(water, current_W, pose.pose.p_WB));
+    evaluation.loads = to_loads(body, wrench, flow_at_body(water, current_W, pose.pose.p_WB));
     return evaluation;
   }
   const HydrodynamicState moving = hydrodynamic_state(body, water, current_W, pose.pose, twist, outcome);

@@ -19,7 +19,7 @@ struct RowEvaluation {
 
 // pose: that of validate_pose(state, lead_time); the lead_time is that of the water too. condition: of the
 // body's compartments and tanks; nullptr: it has none, or their condition is unknown.
-RowEvaluation evaluate_row(const Body& body, const CurrentWater& water, const Vec3& current_W,
+RowEvaluation evaluate_row(const Body& body, const WaterState& water, const Vec3& current_W,
                            const BodyState& state, const ValidatedPose& pose, const BodyCondition* condition);
 
 // Fills in the loads of a body's rows, which have loads: the recorded ones, and others computed in the water
