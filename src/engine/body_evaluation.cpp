@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 #include "engine/subdivision_load.h"
@@ -10,6 +11,8 @@
 
 namespace buoyancy {
 namespace {
+
+constexpr std::size_t kMinGroup = 3;  // fewer are quicker one by one
 
 bool all_finite(const Pose& pose) {
   return pose.p_WB.allFinite() && pose.q_WB.coeffs().allFinite();
@@ -39,7 +42,35 @@ BodyStatus to_body_status(BuoyancyStatus status) {
   return BodyStatus::kOutOfRange;
 }
 
+WaveDetails details_of(const WaveBuoyancyResult& computed) {
+  return {computed.work_capped, computed.sea_too_steep, computed.below_bed, computed.volume_error_bound,
+          static_cast<std::int64_t>(computed.patches)};
+}
+
+// The fields that accompany a result that was computed at a valid pose.
+void complete_outcome(bool quaternion_normalised, const WaveDetails& in_waves, BodyOutcome& outcome) {
+  outcome.status = to_body_status(outcome.result.status);
+  outcome.quaternion_normalised = quaternion_normalised;
+  outcome.unchanged = false;
+  outcome.in_waves = in_waves;
+}
+
+// computed: of the mesh of the query's body alone.
+void set_outcome(const PoseQuery& query, const WaterState& water, WaveBuoyancyResult& computed) {
+  BodyOutcome& outcome = *query.outcome;
+  outcome.flooded_volume = 0.0;
+  if (query.body->subdivision != nullptr) {
+    outcome.flooded_volume = add_subdivision_load(*query.body, query.condition, water, query.pose, computed);
+  }
+  outcome.result = computed.result;
+  complete_outcome(query.quaternion_normalised, details_of(computed), outcome);
+}
+
 }  // namespace
+
+bool has_finite_twist(const BodyState& state) {
+  return all_finite(state.linear_velocity) && all_finite(state.angular_velocity);
+}
 
 ValidatedPose validate_pose(const BodyState& state, double lead_time) {
   ValidatedPose validated;
@@ -52,8 +83,7 @@ ValidatedPose validate_pose(const BodyState& state, double lead_time) {
   validated.status = BodyStatus::kBadLeadTime;
   if (!std::isfinite(lead_time)) return validated;
   validated.status = BodyStatus::kNonFiniteTwist;
-  if (lead_time != 0.0 && (!all_finite(state.linear_velocity) || !all_finite(state.angular_velocity)))
-    return validated;
+  if (lead_time != 0.0 && !has_finite_twist(state)) return validated;
   const auto& [w, x, y, z] = state.quaternion_wxyz;
   validated.pose = {.p_WB = to_vec3(state.position), .q_WB = {w, x, y, z}};
   if (lead_time != 0.0) {
@@ -89,22 +119,46 @@ WaveBuoyancyResult buoyancy_of(const Solver& solver, const PreparedMesh& mesh, c
   return buoyancy_in_waves(solver, mesh.wave_mesh.value(), *water.waves, pose, reference_B);
 }
 
-WaveDetails details_of(const WaveBuoyancyResult& computed) {
-  return {computed.work_capped, computed.sea_too_steep, computed.below_bed, computed.volume_error_bound};
+double estimated_time(const Solver& solver, bool in_waves) {
+  const auto triangles = static_cast<double>(solver.mesh().surface.triangles.size());
+  // In waves, the cost hardly depends on the mesh; the baselines add up some hundred components per triangle.
+  if (in_waves) return solver.method() == Method::kHierarchical ? 4e4 : 200.0 * triangles;
+  return solver.method() == Method::kHierarchical ? 200.0 + 35.0 * std::sqrt(triangles) : 1.5 * triangles;
+}
+
+void evaluate(std::span<const PoseQuery> queries, const WaterState& water) {
+  if (water.waves != nullptr || queries.size() < kMinGroup) {
+    for (const PoseQuery& query : queries) {
+      const Body& body = *query.body;
+      WaveBuoyancyResult computed =
+          buoyancy_of(body.solver, *body.prepared_mesh, water, query.pose, body.reference_B);
+      set_outcome(query, water, computed);
+    }
+    return;
+  }
+  assert(queries.size() <= kMaxGroup);
+  std::array<BuoyancyQuery, kMaxGroup> together;
+  std::array<BuoyancyResult, kMaxGroup> results;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const Body& body = *queries[i].body;
+    together[i] = {.solver = &body.solver, .pose = queries[i].pose, .reference_B = body.reference_B};
+  }
+  buoyancy(std::span(together).first(queries.size()), *water.at_rest,
+           std::span(results).first(queries.size()));
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    WaveBuoyancyResult computed{.result = results[i]};
+    set_outcome(queries[i], water, computed);
+  }
 }
 
 void evaluate(const Body& body, const WaterState& water, const ValidatedPose& validated, BodyOutcome& outcome,
               const BodyCondition* condition) {
-  WaveBuoyancyResult computed =
-      buoyancy_of(body.solver, *body.prepared_mesh, water, validated.pose, body.reference_B);
-  double flooded_volume = 0.0;
-  if (body.subdivision != nullptr) {
-    flooded_volume = add_subdivision_load(body, condition, water, validated.pose, computed);
-  }
-  outcome.result = computed.result;
-  complete_outcome(validated.quaternion_normalised, outcome);
-  outcome.in_waves = details_of(computed);
-  outcome.flooded_volume = flooded_volume;
+  const PoseQuery query{.body = &body,
+                        .pose = validated.pose,
+                        .quaternion_normalised = validated.quaternion_normalised,
+                        .condition = condition,
+                        .outcome = &outcome};
+  evaluate(std::span(&query, 1), water);
 }
 
 // Apart from try_evaluate_from_bounds(), which is the whole cost of most bodies of a large scene at rest.
@@ -119,8 +173,7 @@ void evaluate(const Body& body, const WaterState& water, const ValidatedPose& va
     return false;
   }
   outcome.result = computed.result;
-  complete_outcome(validated.quaternion_normalised, outcome);
-  outcome.in_waves = details_of(computed);
+  complete_outcome(validated.quaternion_normalised, details_of(computed), outcome);
   return true;
 }
 
@@ -133,15 +186,8 @@ bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged,
   if (!try_buoyancy_from_bounds(body.solver, submerged, validated.pose, *water.at_rest, outcome.result)) {
     return false;
   }
-  complete_outcome(validated.quaternion_normalised, outcome);
+  complete_outcome(validated.quaternion_normalised, {}, outcome);
   return true;
-}
-
-void complete_outcome(bool quaternion_normalised, BodyOutcome& outcome) {
-  outcome.status = to_body_status(outcome.result.status);
-  outcome.quaternion_normalised = quaternion_normalised;
-  outcome.unchanged = false;
-  outcome.in_waves = {};
 }
 
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome) {

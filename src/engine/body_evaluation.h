@@ -1,9 +1,14 @@
-// Evaluates one body: validates the pose of a received state, extrapolates it by lead_time and computes the
-// wrench. This is the main path's link between messages and hydrostatics.
+// From the state of a body to its wrench: checks the state, extrapolates its pose by lead_time and computes
+// what the water does to the body. This is the main path's link between messages and hydrostatics. The
+// service, queries of many poses, the report and the response checks all call these functions, so that they
+// agree on the order of the checks and on the bits.
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "hydrostatics/buoyancy.h"
 #include "messages/hydrostatics.h"
@@ -30,6 +35,8 @@ struct ValidatedPose {
 // double's range.
 ValidatedPose validate_pose(const BodyState& state, double lead_time);
 
+bool has_finite_twist(const BodyState& state);
+
 // The bits of p_WB and q_WB: poses with equal bits have the same result.
 using PoseBits = std::array<std::uint64_t, 7>;
 PoseBits pose_bits(const Pose& pose);
@@ -43,6 +50,7 @@ struct WaveDetails {
   bool sea_too_steep = false;
   bool below_bed = false;
   double volume_error_bound = 0.0;  // [m^3]
+  std::int64_t patches = 0;         // that were computed
 };
 
 // A body's result, and what the service's counters record about it.
@@ -61,16 +69,46 @@ struct WaterState {
   const SeaAtTime* waves = nullptr;  // nullptr: the water is at rest
 };
 
+// The farthest lead time [s] in waves: phases are exact to this time and further.
+inline constexpr double kMaxLeadTimeInWaves = 1e12;
+
+// The status of a state whose pose is valid, before anything is computed. Checks in this order: the twist is
+// finite, where the body's loads need it; the condition of its compartments and tanks is known; the water is
+// known; the lead time is within range.
+inline BodyStatus check_state(const BodyState& state, double lead_time, const WaterState& water,
+                              bool needs_twist, bool is_condition_known) {
+  if (needs_twist && !has_finite_twist(state)) return BodyStatus::kNonFiniteTwist;
+  if (!is_condition_known) return BodyStatus::kBadCondition;
+  if (water.at_rest == nullptr) return BodyStatus::kNoSea;
+  const bool is_far = water.waves != nullptr && std::abs(lead_time) > kMaxLeadTimeInWaves;
+  return is_far ? BodyStatus::kOutOfRange : BodyStatus::kOk;
+}
+
+// [ns], rough cost of a query at the surface on the processors of docs/measurements.md. A factor of two
+// either way makes no difference to what uses it.
+double estimated_time(const Solver& solver, bool in_waves);
+
 // The result of a mesh at a pose. mesh: of the solver. Precondition: the water is known. No heap allocation,
 // except, in waves, until a thread's buffers are as large as its queries need.
 WaveBuoyancyResult buoyancy_of(const Solver& solver, const PreparedMesh& mesh, const WaterState& water,
                                const Pose& pose, const Vec3& reference_B);
 
-// The details of a result of buoyancy_of().
-WaveDetails details_of(const WaveBuoyancyResult& computed);
+// A pose at which a body is computed, and where its outcome goes.
+struct PoseQuery {
+  const Body* body = nullptr;
+  Pose pose;  // of a ValidatedPose with status kOk
+  bool quaternion_normalised = false;
+  const BodyCondition* condition = nullptr;  // of its compartments and tanks; nullptr: that of the scene file
+  BodyOutcome* outcome = nullptr;
+};
 
-// condition: of the body's compartments and tanks; nullptr: that of the scene file. Preconditions:
-// validated.status is kOk, and the water is known.
+// The most queries that are computed together: a group is quicker than its queries one by one, and has their
+// bits.
+inline constexpr std::size_t kMaxGroup = 8;
+
+// Sets the outcome of every query. Preconditions: there are at most kMaxGroup, and the water is known.
+void evaluate(std::span<const PoseQuery> queries, const WaterState& water);
+// The same for one.
 void evaluate(const Body& body, const WaterState& water, const ValidatedPose& validated, BodyOutcome& outcome,
               const BodyCondition* condition = nullptr);
 // Sets outcome to what bounds alone decide (see try_buoyancy_from_bounds, and in waves
@@ -79,9 +117,6 @@ void evaluate(const Body& body, const WaterState& water, const ValidatedPose& va
 // Preconditions: validated.status is kOk, and the water is known. No heap allocation.
 bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged, const WaterState& water,
                               const ValidatedPose& validated, BodyOutcome& outcome);
-// Sets the fields of outcome that accompany its result, which was computed at a valid pose; in_waves to those
-// of water at rest. flooded_volume stays.
-void complete_outcome(bool quaternion_normalised, BodyOutcome& outcome);
 BodyWrench to_wrench(std::int32_t body_id, const BodyOutcome& outcome);
 void add_to_counters(const BodyOutcome& outcome, ServiceCounters& counters);
 

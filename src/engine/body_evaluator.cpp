@@ -11,8 +11,6 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/subdivision_load.h"
-
 namespace buoyancy {
 namespace {
 
@@ -23,18 +21,7 @@ constexpr double kMinTaskWork = 1e4;
 
 // A chunk takes about kMinTaskWork.
 constexpr std::size_t kChunkStates = 256;
-constexpr std::size_t kGroup = 8;             // bodies that are computed together
-constexpr std::size_t kMinGroup = 3;          // fewer are quicker one by one
-constexpr double kMaxLeadTimeInWaves = 1e12;  // [s], phases are exact to this time and further
 constexpr double kBoundsTime = 40.0;  // [ns], rough cost of a state that needs no more than its bounds
-
-// [ns], on the processors of docs/measurements.md. A factor of two either way makes no difference here.
-double estimated_time(const Solver& solver, bool in_waves) {
-  const auto triangles = static_cast<double>(solver.mesh().surface.triangles.size());
-  // In waves, the cost hardly depends on the mesh; the baselines add up some hundred components per triangle.
-  if (in_waves) return solver.method() == Method::kHierarchical ? 4e4 : 200.0 * triangles;
-  return solver.method() == Method::kHierarchical ? 300.0 + 50.0 * std::sqrt(triangles) : 1.5 * triangles;
-}
 
 std::size_t chunks_of(std::size_t states) {
   return (states + kChunkStates - 1) / kChunkStates;
@@ -83,7 +70,7 @@ void BodyEvaluator::set_scene(const Scene& scene) {
   last_ = std::move(last);
   results_ = std::move(results);
   has_loads_ = scene.bodies_with_hydrodynamics() > 0 || scene.bodies_with_loads() > 0;
-  checks_bodies_ = scene.bodies_with_hydrodynamics() > 0 || scene.bodies_with_subdivision() > 0;
+  needs_twists_ = scene.bodies_with_hydrodynamics() > 0;
   last_twists_ = std::move(last_twists);
   conditions_ = std::move(conditions);
   unknown_conditions_ = std::move(unknown_conditions);
@@ -205,18 +192,10 @@ BodyEvaluator::EvaluationStep BodyEvaluator::evaluate_from_bounds(const BodyStat
     outcome.quaternion_normalised = validated.quaternion_normalised;
     return EvaluationStep::kDone;
   }
-  if (checks_bodies_) {
-    outcome.status = check_body(*body, state);
-    if (outcome.status != BodyStatus::kOk) return EvaluationStep::kDone;
-  }
-  if (water_.at_rest == nullptr) {
-    outcome.status = BodyStatus::kNoSea;
-    return EvaluationStep::kDone;
-  }
-  if (water_.waves != nullptr && std::abs(lead_time) > kMaxLeadTimeInWaves) {
-    outcome.status = BodyStatus::kOutOfRange;
-    return EvaluationStep::kDone;
-  }
+  const bool needs_twist = needs_twists_ && scene_->bodies()[*body].hydrodynamics != nullptr;
+  const bool is_condition_known = unknown_conditions_.empty() || !unknown_conditions_[*body];
+  outcome.status = check_state(state, lead_time, water_, needs_twist, is_condition_known);
+  if (outcome.status != BodyStatus::kOk) return EvaluationStep::kDone;
   if (!mark_first(last_[*body].request, request_number_)) return EvaluationStep::kRepeated;
   const bool done = evaluate_from_bounds(validated, *body, outcome);
   if (done && !has_loads_) return EvaluationStep::kDone;
@@ -224,14 +203,6 @@ BodyEvaluator::EvaluationStep BodyEvaluator::evaluate_from_bounds(const BodyStat
              .body = static_cast<std::uint32_t>(*body),
              .quaternion_normalised = validated.quaternion_normalised};
   return done ? EvaluationStep::kDone : EvaluationStep::kPending;
-}
-
-BodyStatus BodyEvaluator::check_body(std::size_t body, const BodyState& state) const {
-  if (scene_->bodies()[body].hydrodynamics != nullptr && !twist_of(state).is_finite()) {
-    return BodyStatus::kNonFiniteTwist;
-  }
-  const bool is_unknown = !unknown_conditions_.empty() && unknown_conditions_[body];
-  return is_unknown ? BodyStatus::kBadCondition : BodyStatus::kOk;
 }
 
 bool BodyEvaluator::evaluate_from_bounds(const ValidatedPose& validated, std::size_t body,
@@ -273,13 +244,11 @@ void BodyEvaluator::compute_pending(const RequestView& request, ServiceCounters&
     const std::size_t end = std::min(begin + grain, count);
     std::size_t n = begin;
     while (n < end && (n == 0 || !has_passed(deadline))) {
-      const std::size_t size = std::min(kGroup, end - n);
-      if (size >= kMinGroup && water_.waves == nullptr) {
-        compute_group({&pending_order_[n], size}, request, result.counters);
-        n += size;
-      } else {
-        compute(pending_[pending_order_[n++]], request, result.counters);
-      }
+      const std::size_t size = water_.waves == nullptr ? std::min(kMaxGroup, end - n) : 1;
+      std::array<Pending, kMaxGroup> group;
+      for (std::size_t i = 0; i < size; ++i) group[i] = pending_[pending_order_[n + i]];
+      compute(std::span(group).first(size), request, result.counters);
+      n += size;
     }
     result.computed = n - begin;
   });
@@ -292,46 +261,24 @@ void BodyEvaluator::compute_pending(const RequestView& request, ServiceCounters&
   }
 }
 
-void BodyEvaluator::compute_group(std::span<const std::uint32_t> order, const RequestView& request,
-                                  ServiceCounters& counters) {
-  std::array<BuoyancyQuery, kGroup> queries;
-  std::array<BuoyancyResult, kGroup> results;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const Pending& pending = pending_[order[i]];
-    const Body& representative = representative_of(pending.body);
-    queries[i] = {.solver = &representative.solver,
-                  .pose = to_pose(last_[pending.body].pose),
-                  .reference_B = representative.reference_B};
+void BodyEvaluator::compute(std::span<const Pending> group, const RequestView& request,
+                            ServiceCounters& counters) {
+  std::array<PoseQuery, kMaxGroup> queries;
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    const std::size_t body = group[i].body;
+    queries[i] = {.body = &representative_of(body),
+                  .pose = to_pose(last_[body].pose),
+                  .quaternion_normalised = group[i].quaternion_normalised,
+                  .condition = condition(body),
+                  .outcome = &results_[body]};
   }
-  buoyancy(std::span(queries).first(order.size()), *water_.at_rest, std::span(results).first(order.size()));
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    WaveBuoyancyResult computed{.result = results[i]};
-    set_result(pending_[order[i]], computed, request, counters);
+  buoyancy::evaluate(std::span(queries).first(group.size()), water_);
+  for (const Pending& pending : group) {
+    const BodyOutcome& outcome = results_[pending.body];
+    counters.wave_patches += outcome.in_waves.patches;
+    if (outcome.status == BodyStatus::kOk) last_[pending.body].cached = Cached::kResult;
+    respond(pending, outcome, request, counters);
   }
-}
-
-void BodyEvaluator::compute(const Pending& pending, const RequestView& request, ServiceCounters& counters) {
-  const Body& representative = representative_of(pending.body);
-  WaveBuoyancyResult computed = buoyancy_of(representative.solver, *representative.prepared_mesh, water_,
-                                            to_pose(last_[pending.body].pose), representative.reference_B);
-  set_result(pending, computed, request, counters);
-}
-
-void BodyEvaluator::set_result(const Pending& pending, WaveBuoyancyResult& computed,
-                               const RequestView& request, ServiceCounters& counters) {
-  double flooded_volume = 0.0;
-  if (const BodyCondition* inside = condition(pending.body)) {
-    flooded_volume = add_subdivision_load(representative_of(pending.body), inside, water_,
-                                          to_pose(last_[pending.body].pose), computed);
-  }
-  counters.wave_patches += computed.patches;
-  BodyOutcome& outcome = results_[pending.body];
-  outcome.result = computed.result;
-  complete_outcome(pending.quaternion_normalised, outcome);
-  outcome.in_waves = details_of(computed);
-  outcome.flooded_volume = flooded_volume;
-  if (outcome.status == BodyStatus::kOk) last_[pending.body].cached = Cached::kResult;
-  respond(pending, outcome, request, counters);
 }
 
 void BodyEvaluator::respond(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
@@ -343,41 +290,30 @@ void BodyEvaluator::respond(const Pending& pending, const BodyOutcome& buoyancy,
     return;
   }
   BodyOutcome outcome = buoyancy;
-  outcome.unchanged = add_loads(pending, buoyancy, request, wrench);
+  outcome.unchanged = add_loads_of(pending, buoyancy, request, wrench);
   outcome.status = wrench.status;
   outputs_.response.set(pending.state, wrench);
   add_to_counters(outcome, counters);
 }
 
-bool BodyEvaluator::add_loads(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
-                              BodyWrench& wrench) {
+bool BodyEvaluator::add_loads_of(const Pending& pending, const BodyOutcome& buoyancy,
+                                 const RequestView& request, BodyWrench& wrench) {
   const Body& body = scene_->bodies()[pending.body];
-  const Vec3& current_W = scene_->current_W();
-  if (body.hydrodynamics == nullptr) {
-    if (body.loads) {
-      const Pose pose = to_pose(last_[pending.body].pose);
-      set_loads(pending.state, to_loads(body, wrench, flow_at_body(water_, current_W, pose.p_WB)));
-    }
-    return buoyancy.unchanged;
-  }
+  if (body.hydrodynamics == nullptr && !body.loads) return buoyancy.unchanged;
   const BodyTwist twist = twist_of(request.body(pending.state));
-  // A dry body has neither drag nor added mass.
-  if (buoyancy.result.immersion != Immersion::kDry || body.loads) {
-    const Pose pose = to_pose(last_[pending.body].pose);
-    const HydrodynamicState state = hydrodynamic_state(body, water_, current_W, pose, twist, buoyancy);
-    const HydrodynamicLoad load = body.hydrodynamics->load(state);
-    if (body.loads) set_loads(pending.state, to_loads(body, wrench, state, load));
-    add_hydrodynamic_load(load, wrench);
+  const Pose pose = to_pose(last_[pending.body].pose);
+  std::optional<BodyLoads> loads;
+  if (body.loads) loads.emplace();
+  add_loads(body, water_, scene_->current_W(), pose, twist, buoyancy, wrench, loads ? &*loads : nullptr);
+  if (loads && outputs_.loads.size() > 0) {
+    outputs_.loads.set(outputs_.load_places[pending.state - first_state_], *loads);
   }
+  if (body.hydrodynamics == nullptr) return buoyancy.unchanged;
   BodyTwist& last = last_twists_[pending.body];
   const bool unchanged = buoyancy.unchanged && last.velocity_W == twist.velocity_W &&
                          last.angular_velocity_W == twist.angular_velocity_W;
   last = twist;
   return unchanged;
-}
-
-void BodyEvaluator::set_loads(std::size_t state, const BodyLoads& loads) {
-  if (outputs_.loads.size() > 0) outputs_.loads.set(outputs_.load_places[state - first_state_], loads);
 }
 
 void BodyEvaluator::evaluate_repeated(const RequestView& request, std::size_t i, ServiceCounters& counters) {
@@ -391,7 +327,7 @@ void BodyEvaluator::evaluate_repeated(const RequestView& request, std::size_t i,
   if (evaluate_from_bounds(validated, body, outcome)) {
     respond(pending, outcome, request, counters);
   } else {
-    compute(pending, request, counters);
+    compute(std::span(&pending, 1), request, counters);
   }
 }
 

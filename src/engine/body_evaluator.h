@@ -147,25 +147,18 @@ class BodyEvaluator {
   // and if done with kOk in a scene that has loads.
   EvaluationStep evaluate_from_bounds(const BodyState& state, double lead_time, std::size_t i,
                                       Pending& pending, BodyOutcome& outcome);
-  // Of a state with a valid pose: what speaks against a wrench, or kOk. Only with checks_bodies_.
-  BodyStatus check_body(std::size_t body, const BodyState& state) const;
   // False: neither the cached result nor the bounds suffice; the body has to be computed.
   bool evaluate_from_bounds(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome);
   void compute_pending(const RequestView& request, ServiceCounters& counters, Deadline deadline);
-  // Computes the bodies of a few elements of pending_ together. order: their indices.
-  void compute_group(std::span<const std::uint32_t> order, const RequestView& request,
-                     ServiceCounters& counters);
-  void compute(const Pending& pending, const RequestView& request, ServiceCounters& counters);
-  // computed: of the body's mesh alone.
-  void set_result(const Pending& pending, WaveBuoyancyResult& computed, const RequestView& request,
-                  ServiceCounters& counters);
+  // Computes the bodies of at most kMaxGroup states together.
+  void compute(std::span<const Pending> group, const RequestView& request, ServiceCounters& counters);
   // Sets the wrench of a state, and counts it.
   void respond(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
                ServiceCounters& counters);
-  // Adds drag and added mass to the wrench of a body, if it has them. Returns whether the body is unchanged.
-  bool add_loads(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
-                 BodyWrench& wrench);
-  void set_loads(std::size_t state, const BodyLoads& loads);
+  // Adds drag and added mass to the wrench of a body, if it has them, and sets its loads. Returns whether the
+  // body is unchanged.
+  bool add_loads_of(const Pending& pending, const BodyOutcome& buoyancy, const RequestView& request,
+                    BodyWrench& wrench);
   const Body& representative_of(std::size_t body) const { return *kinds_[kind_of_[body]].representative; }
   // Evaluates the i-th state, whose body another state of the request has, after that one.
   void evaluate_repeated(const RequestView& request, std::size_t i, ServiceCounters& counters);
@@ -178,7 +171,7 @@ class BodyEvaluator {
   std::vector<LastPose> last_;             // by body
   std::vector<BodyOutcome> results_;       // by body
   bool has_loads_ = false;                 // does any body have drag, added mass or the loads output?
-  bool checks_bodies_ = false;             // has any body drag, added mass, compartments or tanks?
+  bool needs_twists_ = false;              // has any body drag or added mass?
   std::vector<BodyTwist> last_twists_;     // by body; empty if no body has drag or added mass
   std::vector<BodyCondition> conditions_;  // by body; empty if no body has compartments or tanks
   std::vector<bool> unknown_conditions_;   // likewise

@@ -175,4 +175,18 @@ BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const Hydrodyna
   return loads;
 }
 
+void add_loads(const Body& body, const WaterState& water, const Vec3& current_W, const Pose& pose,
+               const BodyTwist& twist, const BodyOutcome& buoyancy, BodyWrench& wrench, BodyLoads* loads) {
+  if (body.hydrodynamics == nullptr) {
+    if (loads != nullptr) *loads = to_loads(body, wrench, flow_at_body(water, current_W, pose.p_WB));
+    return;
+  }
+  // A dry body has neither drag nor added mass.
+  if (buoyancy.result.immersion == Immersion::kDry && loads == nullptr) return;
+  const HydrodynamicState state = hydrodynamic_state(body, water, current_W, pose, twist, buoyancy);
+  const HydrodynamicLoad load = body.hydrodynamics->load(state);
+  if (loads != nullptr) *loads = to_loads(body, wrench, state, load);
+  add_hydrodynamic_load(load, wrench);
+}
+
 }  // namespace buoyancy

@@ -12,8 +12,6 @@ namespace buoyancy {
 struct BodyTwist {
   Vec3 velocity_W = Vec3::Zero();          // [m/s], of B's origin
   Vec3 angular_velocity_W = Vec3::Zero();  // [rad/s]
-
-  bool is_finite() const { return velocity_W.allFinite() && angular_velocity_W.allFinite(); }
 };
 BodyTwist twist_of(const BodyState& state);
 
@@ -36,5 +34,10 @@ BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const Hydrodyna
                    const HydrodynamicLoad& load);
 // The same for a body without a hydrodynamic model. at_origin: the water at the body's origin.
 BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const FlowAtBody& at_origin);
+
+// Completes the wrench of a body that has drag, added mass or the loads output: adds drag and added mass, and
+// sets `loads`, if it is not nullptr. wrench: the buoyant one of `buoyancy`, whose status is kOk.
+void add_loads(const Body& body, const WaterState& water, const Vec3& current_W, const Pose& pose,
+               const BodyTwist& twist, const BodyOutcome& buoyancy, BodyWrench& wrench, BodyLoads* loads);
 
 }  // namespace buoyancy

@@ -6,21 +6,10 @@
 #include <cmath>
 
 #include "engine/load_evaluation.h"
-#include "engine/subdivision_load.h"
 #include "query/pose_loop.h"
 
 namespace buoyancy {
 namespace {
-
-constexpr std::size_t kGroup = 8;  // poses that are computed together
-
-// [ns], rough: a factor of two either way makes no difference.
-double estimated_time(const Body& body, bool in_waves) {
-  const auto triangles = static_cast<double>(body.solver.mesh().surface.triangles.size());
-  if (in_waves) return body.solver.method() == Method::kHierarchical ? 4e4 : 200.0 * triangles;
-  return body.solver.method() == Method::kHierarchical ? 100.0 + 25.0 * std::sqrt(triangles)
-                                                       : 1.5 * triangles;
-}
 
 template <std::size_t kSize>
 std::array<double, kSize> element(std::span<const double> values, std::size_t i) {
@@ -71,80 +60,50 @@ class RangeEvaluation {
   }
 
  private:
-  // A pose that crosses the surface of water at rest, to be computed with others.
-  struct Pending {
-    std::size_t pose = 0;
-    bool quaternion_normalised = false;
-  };
-
   void evaluate(std::size_t i) {
     const BodyState state = state_at(body_, poses_, i);
     const ValidatedPose validated = validate_pose(state, 0.0);
     BodyOutcome outcome;
     outcome.status = validated.status;
-    if (outcome.status == BodyStatus::kOk && body_.hydrodynamics != nullptr && !twist_of(state).is_finite()) {
-      outcome.status = BodyStatus::kNonFiniteTwist;
+    if (outcome.status == BodyStatus::kOk) {
+      if (water_.is_known) move_to(poses_.utime(i));
+      outcome.status = check_state(state, 0.0, now_, body_.hydrodynamics != nullptr, true);
     }
-    if (outcome.status == BodyStatus::kOk && !water_.is_known) outcome.status = BodyStatus::kNoSea;
     if (outcome.status != BodyStatus::kOk) return store(to_wrench(body_.id, outcome), wrenches_, i);
+    if (try_evaluate_from_bounds(body_, submerged_, now_, validated, outcome)) {
+      return complete(i, validated.pose, outcome);
+    }
+    pending_[pending_count_] = i;
+    queries_[pending_count_] = {.body = &body_,
+                                .pose = validated.pose,
+                                .quaternion_normalised = validated.quaternion_normalised,
+                                .condition = nullptr,
+                                .outcome = &outcomes_[pending_count_]};
+    // Waves move on with the next pose.
+    if (++pending_count_ == kMaxGroup || now_.waves != nullptr) compute_group();
+  }
 
-    const WaterState now{&water_.at_rest, sea_.at(poses_.utime(i))};
-    if (try_evaluate_from_bounds(body_, submerged_, now, validated, outcome)) {
-      return complete(state, validated.pose, now, outcome, i);
-    }
-    if (now.waves != nullptr) {
-      buoyancy::evaluate(body_, now, validated, outcome);
-      return complete(state, validated.pose, now, outcome, i);
-    }
-    pending_[pending_count_] = {i, validated.quaternion_normalised};
-    queries_[pending_count_] = {
-        .solver = &body_.solver, .pose = validated.pose, .reference_B = body_.reference_B};
-    if (++pending_count_ == kGroup) compute_group();
+  // Poses that wait are in water at rest, and are computed before waves begin.
+  void move_to(std::int64_t utime) {
+    const SeaAtTime* const waves = sea_.at(utime);
+    if (waves != now_.waves) compute_group();
+    now_ = {&water_.at_rest, waves};
   }
 
   void compute_group() {
-    std::array<BuoyancyResult, kGroup> results;
-    buoyancy::buoyancy(std::span(queries_).first(pending_count_), water_.at_rest,
-                       std::span(results).first(pending_count_));
-    for (std::size_t n = 0; n < pending_count_; ++n) {
-      BodyOutcome outcome;
-      WaveBuoyancyResult computed{.result = results[n]};
-      double flooded_volume = 0.0;
-      if (body_.subdivision != nullptr) {
-        flooded_volume =
-            add_subdivision_load(body_, nullptr, {&water_.at_rest, nullptr}, queries_[n].pose, computed);
-      }
-      outcome.result = computed.result;
-      complete_outcome(pending_[n].quaternion_normalised, outcome);
-      outcome.flooded_volume = flooded_volume;
-      const std::size_t i = pending_[n].pose;
-      complete(state_at(body_, poses_, i), queries_[n].pose, {&water_.at_rest, nullptr}, outcome, i);
-    }
+    buoyancy::evaluate(std::span(queries_).first(pending_count_), now_);
+    for (std::size_t n = 0; n < pending_count_; ++n) complete(pending_[n], queries_[n].pose, outcomes_[n]);
     pending_count_ = 0;
   }
 
   // Adds the loads of motion to a buoyant wrench, and stores it.
-  void complete(const BodyState& state, const Pose& pose, const WaterState& now, const BodyOutcome& outcome,
-                std::size_t i) {
+  void complete(std::size_t i, const Pose& pose, const BodyOutcome& outcome) {
     BodyWrench wrench = to_wrench(body_.id, outcome);
     if (outcome.status == BodyStatus::kOk && (body_.hydrodynamics != nullptr || !loads_.empty())) {
-      add_loads(twist_of(state), pose, now, outcome, i, wrench);
+      add_loads(body_, now_, water_.current_W, pose, twist_of(state_at(body_, poses_, i)), outcome, wrench,
+                loads_.empty() ? nullptr : &loads_[i]);
     }
     store(wrench, wrenches_, i);
-  }
-
-  void add_loads(const BodyTwist& twist, const Pose& pose, const WaterState& now, const BodyOutcome& outcome,
-                 std::size_t i, BodyWrench& wrench) {
-    if (body_.hydrodynamics == nullptr) {
-      loads_[i] = to_loads(body_, wrench, flow_at_body(now, water_.current_W, pose.p_WB));
-      return;
-    }
-    // A dry body has neither drag nor added mass.
-    if (outcome.result.immersion == Immersion::kDry && loads_.empty()) return;
-    const HydrodynamicState state = hydrodynamic_state(body_, now, water_.current_W, pose, twist, outcome);
-    const HydrodynamicLoad load = body_.hydrodynamics->load(state);
-    if (!loads_.empty()) loads_[i] = to_loads(body_, wrench, state, load);
-    add_hydrodynamic_load(load, wrench);
   }
 
   const Body& body_;
@@ -154,8 +113,10 @@ class RangeEvaluation {
   std::span<BodyLoads> loads_;
   FullySubmerged submerged_;
   MovingSea sea_;
-  std::array<Pending, kGroup> pending_;
-  std::array<BuoyancyQuery, kGroup> queries_;
+  WaterState now_;
+  std::array<PoseQuery, kMaxGroup> queries_;
+  std::array<BodyOutcome, kMaxGroup> outcomes_;
+  std::array<std::size_t, kMaxGroup> pending_{};  // the index of each query's pose
   std::size_t pending_count_ = 0;
 };
 
@@ -175,7 +136,7 @@ QueryWater water_of(const Scene& scene) {
 void evaluate_poses(const Body& body, const QueryWater& water, const PoseArrays& poses,
                     const WrenchArrays& wrenches, std::span<BodyLoads> loads, unsigned threads) {
   assert(wrenches.statuses.size() == poses.size() && (loads.empty() || loads.size() == poses.size()));
-  run_chunks(poses.size(), estimated_time(body, water.waves != nullptr), threads,
+  run_chunks(poses.size(), estimated_time(body.solver, water.waves != nullptr), threads,
              [&](std::size_t begin, std::size_t end) {
                RangeEvaluation(body, water, poses, wrenches, loads).run(begin, end);
              });
@@ -184,18 +145,20 @@ void evaluate_poses(const Body& body, const QueryWater& water, const PoseArrays&
 void evaluate_hydrostatics(const Body& body, const Water& water, const PoseArrays& poses,
                            std::span<BodyHydrostatics> hydrostatics, unsigned threads) {
   assert(hydrostatics.size() == poses.size());
-  run_chunks(poses.size(), estimated_time(body, false), threads, [&](std::size_t begin, std::size_t end) {
-    ServiceCounters counters;
-    for (std::size_t i = begin; i < end; ++i) {
-      const ValidatedPose validated = validate_pose(state_at(body, poses, i), 0.0);
-      BodyOutcome outcome;
-      outcome.status = validated.status;
-      // Its status says whether the pose is within range, and whether the boundary of an open mesh is dry.
-      if (outcome.status == BodyStatus::kOk) evaluate(body, {&water, nullptr}, validated, outcome);
-      hydrostatics[i] =
-          buoyancy::evaluate_hydrostatics(body, water, validated.pose, outcome.status, counters);
-    }
-  });
+  run_chunks(poses.size(), estimated_time(body.solver, false), threads,
+             [&](std::size_t begin, std::size_t end) {
+               ServiceCounters counters;
+               for (std::size_t i = begin; i < end; ++i) {
+                 const ValidatedPose validated = validate_pose(state_at(body, poses, i), 0.0);
+                 BodyOutcome outcome;
+                 outcome.status = validated.status;
+                 // Its status says whether the pose is within range, and whether the boundary of an open mesh
+                 // is dry.
+                 if (outcome.status == BodyStatus::kOk) evaluate(body, {&water, nullptr}, validated, outcome);
+                 hydrostatics[i] =
+                     buoyancy::evaluate_hydrostatics(body, water, validated.pose, outcome.status, counters);
+               }
+             });
 }
 
 }  // namespace buoyancy

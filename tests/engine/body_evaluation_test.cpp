@@ -205,6 +205,25 @@ TEST(BodyEvaluation, ReportsFirstOfSeveralErrors) {
   EXPECT_EQ(evaluate(state, 1.0).status, BodyStatus::kOk);
 }
 
+TEST(BodyEvaluation, ChecksTwistConditionSeaAndLeadTimeInThisOrder) {
+  BodyState state = upright(kBox, 0.1);
+  const double far = 2.0 * kMaxLeadTimeInWaves;
+  const WaterState unknown;
+  const Water at_rest;
+  const auto* const waves = reinterpret_cast<const SeaAtTime*>(&at_rest);  // is not read
+  const WaterState still{&at_rest, nullptr};
+  const WaterState moving{&at_rest, waves};
+  EXPECT_EQ(check_state(state, far, moving, true, true), BodyStatus::kOutOfRange);
+  EXPECT_EQ(check_state(state, -far, moving, true, true), BodyStatus::kOutOfRange);
+  EXPECT_EQ(check_state(state, kMaxLeadTimeInWaves, moving, true, true), BodyStatus::kOk);
+  EXPECT_EQ(check_state(state, far, still, true, true), BodyStatus::kOk);
+  EXPECT_EQ(check_state(state, far, unknown, true, true), BodyStatus::kNoSea);
+  EXPECT_EQ(check_state(state, far, unknown, true, false), BodyStatus::kBadCondition);
+  state.angular_velocity[2] = kInfinity;
+  EXPECT_EQ(check_state(state, far, unknown, true, false), BodyStatus::kNonFiniteTwist);
+  EXPECT_EQ(check_state(state, far, unknown, false, false), BodyStatus::kBadCondition);
+}
+
 TEST(BodyEvaluation, IgnoresVelocitiesWithoutLeadTime) {
   BodyState state = upright(kBox, 0.1);
   const BodyWrench at_rest = evaluate(state);

@@ -40,30 +40,20 @@ WaterState water_of(const RowLoads& row, const Scene& scene, WaterAtTime& water)
 }  // namespace
 
 RowEvaluation evaluate_row(const Body& body, const WaterState& water, const Vec3& current_W,
-                           const BodyState& state, const ValidatedPose& pose,
-                           const BodyCondition* condition) {
+                           const BodyState& state, double lead_time, const BodyCondition* condition) {
+  const ValidatedPose pose = validate_pose(state, lead_time);
   BodyOutcome outcome;
   outcome.status = pose.status;
-  const BodyTwist twist = twist_of(state);
-  if (outcome.status == BodyStatus::kOk && body.hydrodynamics != nullptr && !twist.is_finite()) {
-    outcome.status = BodyStatus::kNonFiniteTwist;
-  }
-  if (outcome.status == BodyStatus::kOk && water.at_rest == nullptr) outcome.status = BodyStatus::kNoSea;
-  if (outcome.status == BodyStatus::kOk && body.subdivision != nullptr && condition == nullptr) {
-    outcome.status = BodyStatus::kBadCondition;
+  if (outcome.status == BodyStatus::kOk) {
+    outcome.status = check_state(state, lead_time, water, body.hydrodynamics != nullptr,
+                                 body.subdivision == nullptr || condition != nullptr);
   }
   if (outcome.status == BodyStatus::kOk) evaluate(body, water, pose, outcome, condition);
   RowEvaluation evaluation{.wrench = to_wrench(body.id, outcome), .loads = std::nullopt};
   BodyWrench& wrench = evaluation.wrench;
   if (!has_loads(body) || wrench.status != BodyStatus::kOk) return evaluation;
-  if (body.hydrodynamics == nullptr) {
-    evaluation.loads = to_loads(body, wrench, flow_at_body(water, current_W, pose.pose.p_WB));
-    return evaluation;
-  }
-  const HydrodynamicState moving = hydrodynamic_state(body, water, current_W, pose.pose, twist, outcome);
-  const HydrodynamicLoad load = body.hydrodynamics->load(moving);
-  evaluation.loads = to_loads(body, wrench, moving, load);
-  add_hydrodynamic_load(load, wrench);
+  buoyancy::add_loads(body, water, current_W, pose.pose, twist_of(state), outcome, wrench,
+                      &evaluation.loads.emplace());
   if (wrench.status != BodyStatus::kOk) evaluation.loads.reset();
   return evaluation;
 }
@@ -81,8 +71,8 @@ void add_loads(const Scene& scene, const Body& body, const std::vector<KeptRow>&
       continue;
     }
     const std::optional<BodyLoads> computed =
-        evaluate_row(body, water_of(source, scene, water), scene.current_W(), source.state,
-                     validate_pose(source.state, source.lead_time), row.condition.get())
+        evaluate_row(body, water_of(source, scene, water), scene.current_W(), source.state, source.lead_time,
+                     row.condition.get())
             .loads;
     if (!computed) continue;
     run.loads.back() = to_row(*computed);

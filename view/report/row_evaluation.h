@@ -17,10 +17,10 @@ struct RowEvaluation {
   std::optional<BodyLoads> loads;  // of a body with loads (view/common/scene_model.h) whose status is kOk
 };
 
-// pose: that of validate_pose(state, lead_time); the lead_time is that of the water too. condition: of the
-// body's compartments and tanks; nullptr: it has none, or their condition is unknown.
+// lead_time: [s], of the state and of the water. condition: of the body's compartments and tanks; nullptr: it
+// has none, or their condition is unknown.
 RowEvaluation evaluate_row(const Body& body, const WaterState& water, const Vec3& current_W,
-                           const BodyState& state, const ValidatedPose& pose, const BodyCondition* condition);
+                           const BodyState& state, double lead_time, const BodyCondition* condition);
 
 // Fills in the loads of a body's rows, which have loads: the recorded ones, and others computed in the water
 // of their time. O(rows * cost of a query).

@@ -211,11 +211,11 @@ std::shared_ptr<RowLoads> RunBuilder::add(const RecordedState& recorded) {
   if (!has_waves(scene_)) count_evaluation(*shown, body, pose);
   if (!recorded.wrench && !recorded.force_torque) ++run_.computed;
   const std::shared_ptr<const BodyCondition> condition = conditions_.at(*index, recorded.utime);
-  BodyWrench wrench = recorded.wrench
-                          ? *recorded.wrench
-                          : evaluate_row(body, water_.move_to(recorded.utime, recorded.lead_time).water,
-                                         scene_.current_W(), recorded.state, pose, condition.get())
-                                .wrench;
+  BodyWrench wrench =
+      recorded.wrench ? *recorded.wrench
+                      : evaluate_row(body, water_.move_to(recorded.utime, recorded.lead_time).water,
+                                     scene_.current_W(), recorded.state, recorded.lead_time, condition.get())
+                            .wrench;
   if (recorded.force_torque) {
     wrench.force = recorded.force_torque->force;
     wrench.torque = recorded.force_torque->torque;
