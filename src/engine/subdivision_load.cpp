@@ -135,9 +135,7 @@ std::optional<Hydrostatics> subdivided_hydrostatics(const Body& body, const Body
   const Vec3 up_B = pose.q_WB.normalized().conjugate() * water.up_W;
   for (std::size_t i = 0; i < subdivision.tanks.size(); ++i) {
     const Tank tank = tank_at(subdivision, condition, i);
-    const TankLiquid liquid = tank_liquid(tank, up_B);
-    add_liquid(tank, liquid, Vec3::Zero(), liquids);
-    add_free_surface(tank, liquid, liquids);
+    add_liquid(tank, tank_liquid(tank, up_B), Vec3::Zero(), FreeSurfaces::kYes, liquids);
   }
   const std::optional<Vec3> center_B = total_center_of_mass(body, water, liquids);
   liquids.moment -= liquids.mass * body.reference_B;  // now about the reference point

@@ -71,13 +71,7 @@ double wetted_area_sum(const FloatingBody& body, const WaterPlane& plane) {
 }
 
 LiquidSum liquid_sum(const FloatingBody& body, const Vec3& up_B, FreeSurfaces free_surfaces) {
-  LiquidSum sum;
-  for (const Tank& tank : body.tanks()) {
-    const TankLiquid liquid = tank_liquid(tank, up_B);
-    add_liquid(tank, liquid, body.center_B(), sum);
-    if (free_surfaces == FreeSurfaces::kYes) add_free_surface(tank, liquid, sum);
-  }
-  return sum;
+  return liquid_sum(body.tanks(), up_B, body.center_B(), free_surfaces);
 }
 
 Vec3 mass_moment(const FloatingBody& body, const LiquidSum& liquids) {

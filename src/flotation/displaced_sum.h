@@ -28,8 +28,6 @@ ImmersedPart immersed_sum(const FloatingBody& body, const WaterPlane& plane);
 // [m^2], of the meshes of factor 1, without the waterplane.
 double wetted_area_sum(const FloatingBody& body, const WaterPlane& plane);
 
-enum class FreeSurfaces { kNo, kYes };
-
 // The liquids in the tanks, about the body's center_B; with their free surfaces if asked for. Complexity:
 // that of tank_liquid() per tank.
 LiquidSum liquid_sum(const FloatingBody& body, const Vec3& up_B, FreeSurfaces free_surfaces);

@@ -78,15 +78,21 @@ Mat3 free_surface_second_moments(const Tank& tank, const TankLiquid& liquid) {
   return moments.moved(moments.waterplane_moment / moments.waterplane_area).waterplane_second_moments;
 }
 
-void add_liquid(const Tank& tank, const TankLiquid& liquid, const Vec3& about_B, LiquidSum& sum) {
+void add_liquid(const Tank& tank, const TankLiquid& liquid, const Vec3& about_B, FreeSurfaces free_surfaces,
+                LiquidSum& sum) {
   if (!(tank.liquid_volume > 0.0)) return;
   const double mass = tank.liquid_mass();
   sum.mass += mass;
   sum.moment += mass * ((tank.mesh->center_B - about_B) + liquid.centroid);
+  if (free_surfaces == FreeSurfaces::kNo) return;
+  sum.free_surface += tank.density * free_surface_second_moments(tank, liquid);
 }
 
-void add_free_surface(const Tank& tank, const TankLiquid& liquid, LiquidSum& sum) {
-  sum.free_surface += tank.density * free_surface_second_moments(tank, liquid);
+LiquidSum liquid_sum(std::span<const Tank> tanks, const Vec3& up_B, const Vec3& about_B,
+                     FreeSurfaces free_surfaces) {
+  LiquidSum sum;
+  for (const Tank& tank : tanks) add_liquid(tank, tank_liquid(tank, up_B), about_B, free_surfaces, sum);
+  return sum;
 }
 
 }  // namespace buoyancy

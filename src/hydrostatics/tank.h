@@ -6,6 +6,8 @@
 // that its first moment is the derivative of that energy (docs/mathematics.md, "Compartments and tanks").
 #pragma once
 
+#include <span>
+
 #include "hydrostatics/hydrostatic_mesh.h"
 #include "hydrostatics/water_plane.h"
 
@@ -44,9 +46,13 @@ struct LiquidSum {
   Mat3 free_surface = Mat3::Zero();  // [kg m^2], B axes: densities times free_surface_second_moments()
 };
 
-// Adds a tank, without its free surface. about_B: the point of the sum.
-void add_liquid(const Tank& tank, const TankLiquid& liquid, const Vec3& about_B, LiquidSum& sum);
-// Adds its free surface.
-void add_free_surface(const Tank& tank, const TankLiquid& liquid, LiquidSum& sum);
+enum class FreeSurfaces { kNo, kYes };
+
+// Adds a tank, with its free surface if asked for. about_B: the point of the sum.
+void add_liquid(const Tank& tank, const TankLiquid& liquid, const Vec3& about_B, FreeSurfaces free_surfaces,
+                LiquidSum& sum);
+// Complexity: that of tank_liquid() per tank, and with free surfaces a query of hydrostatics more.
+LiquidSum liquid_sum(std::span<const Tank> tanks, const Vec3& up_B, const Vec3& about_B,
+                     FreeSurfaces free_surfaces);
 
 }  // namespace buoyancy

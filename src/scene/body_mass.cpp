@@ -120,7 +120,7 @@ BodyMass mass_with_liquids(const Body& body, const BodyMass& own, const BodyCond
   std::vector<TankLiquid> found;
   for (const Tank& tank : tanks) {
     found.push_back(tank_liquid(tank, up_B));
-    add_liquid(tank, found.back(), own.center_of_mass_B, liquids);
+    add_liquid(tank, found.back(), own.center_of_mass_B, FreeSurfaces::kNo, liquids);
   }
   if (!(liquids.mass > 0.0)) return own;
   BodyMass sum;
@@ -143,12 +143,7 @@ Mat6 stiffness_of_weights(const BodyMass& own, std::span<const Tank> tanks, cons
   if (tanks.empty()) return Mat6::Zero();
   const Mat3 R_WB = q_WB.normalized().toRotationMatrix();
   const Vec3 up_B = R_WB.transpose() * water.up_W;
-  LiquidSum liquids;
-  for (const Tank& tank : tanks) {
-    const TankLiquid liquid = tank_liquid(tank, up_B);
-    add_liquid(tank, liquid, center_B, liquids);
-    add_free_surface(tank, liquid, liquids);
-  }
+  const LiquidSum liquids = liquid_sum(tanks, up_B, center_B, FreeSurfaces::kYes);
   const Weights weights = weights_of(own, liquids, center_B);
   DisplacementMoments<double> moments;
   moments.volume = weights.mass;

@@ -34,10 +34,7 @@ Vec3 angular_momentum_of(const RigidBody& body, const Eigen::Quaterniond& q_WB, 
 
 // About C, with the liquids as they lie at the attitude.
 Weights weights_at(const RigidBody& body, const BodyContents& contents, const Vec3& up_B) {
-  LiquidSum liquids;
-  for (const Tank& tank : contents.tanks) {
-    add_liquid(tank, tank_liquid(tank, up_B), body.center_of_mass_B, liquids);
-  }
+  const LiquidSum liquids = liquid_sum(contents.tanks, up_B, body.center_of_mass_B, FreeSurfaces::kNo);
   return weights_of(contents.own, liquids, body.center_of_mass_B);
 }
 
@@ -59,7 +56,8 @@ void for_each_flooded(const RigidBody& body, const Pose& pose, const Water& wate
     const HydrostaticMesh& mesh = *compartment.mesh;
     const Displacement displaced = hierarchical(mesh, water_plane_in_body(pose, water, mesh.center_B));
     if (!(displaced.volume > 0.0)) continue;
-    add(-compartment.factor * displaced.volume, Vec3(mesh.center_B + displaced.moment / displaced.volume));
+    add(-compartment.signed_permeability * displaced.volume,
+        Vec3(mesh.center_B + displaced.moment / displaced.volume));
   }
 }
 

@@ -74,7 +74,7 @@ struct CaseBody {
         flotation.relative_density * water.density * (1.0 - flotation.permeability) * mesh.volume;
     std::vector<PlacedMesh> meshes{{.mesh = &mesh}};
     if (flotation.permeability > 0.0) {
-      meshes.push_back({.mesh = &mesh, .factor = -flotation.permeability});
+      meshes.push_back({.mesh = &mesh, .signed_permeability = -flotation.permeability});
     }
     double mass = total_mass;
     tank_meshes.reserve(flotation.tanks.size());

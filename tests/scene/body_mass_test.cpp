@@ -89,10 +89,9 @@ TEST(BodyMass, StiffnessOfWeightsIsTheirDerivative) {
   const std::vector<Tank> tanks = tanks_of(body);
   const Vec3 about_B(0.3, -0.2, 0.5);
   const auto torque_W = [&](const Eigen::Quaterniond& q_WB) {
-    LiquidSum sum;
-    for (const Tank& tank : tanks)
-      add_liquid(tank, tank_liquid(tank, q_WB.conjugate() * water.up_W), about_B, sum);
-    const Vec3 moment_B = own.mass * (own.center_of_mass_B - about_B) + sum.moment;
+    const Vec3 up_B = q_WB.conjugate() * water.up_W;
+    const LiquidSum liquids = liquid_sum(tanks, up_B, about_B, FreeSurfaces::kNo);
+    const Vec3 moment_B = own.mass * (own.center_of_mass_B - about_B) + liquids.moment;
     return Vec3(-water.gravity * (q_WB * moment_B).cross(water.up_W));
   };
   const Eigen::Quaterniond q_WB = Eigen::Quaterniond(0.8, -0.3, 0.4, 0.1).normalized();
