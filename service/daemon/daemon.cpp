@@ -329,7 +329,7 @@ void Daemon::on_sea(Bytes message) {
   newest_sea_ = std::move(sea);
   if (newest_sea_->sea == nullptr) return;
   std::string detail;
-  for (const Warning& warning : sea_warnings("received", newest_sea_->sea->sea(), {})) {
+  for (const Warning& warning : sea_warnings("received", *newest_sea_->sea, {})) {
     if (!detail.empty()) detail += ' ';
     detail += warning.message();
   }

@@ -24,9 +24,9 @@ void set_info(const buoyancy::QuerySea& sea, buoyancy_sea_info& info) {
   set(sea.axes().e1_W, info.axis1);
   set(sea.axes().e2_W, info.axis2);
   const bool waves = sea.waves() != nullptr;
-  info.depth = waves ? sea.waves()->sea().depth() : std::numeric_limits<double>::infinity();
-  info.max_elevation = waves ? sea.waves()->sea().max_elevation() : 0.0;
-  info.wave_components = waves ? static_cast<std::int64_t>(sea.waves()->sea().prepared().size()) : 0;
+  info.depth = waves ? sea.waves()->depth() : std::numeric_limits<double>::infinity();
+  info.max_elevation = waves ? sea.waves()->max_elevation() : 0.0;
+  info.wave_components = waves ? static_cast<std::int64_t>(sea.waves()->prepared().size()) : 0;
 }
 
 }  // namespace

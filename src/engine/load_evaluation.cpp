@@ -102,13 +102,13 @@ FlowAtBody flow_at_body(const WaterState& water, const Vec3& current_W, const Ve
   FlowAtBody motion;
   motion.velocity_W = current_W;
   if (water.waves == nullptr) return motion;
-  const WaterAtPoint point = water.waves->snapshot().at(p_W);
+  const WaterAtPoint point = water.waves->at(p_W);
   motion.velocity_W += point.velocity_W;
   motion.acceleration_W = point.acceleration_W;
   // Every component's acceleration is at most g a k, and its velocity that over its frequency. Their phases
   // are exact to 1e-15 of a turn, and their position is rounded.
-  const Sea& sea = water.waves->prepared().sea();
-  const SeaExpansion& expansion = water.waves->prepared().expansion();
+  const Sea& sea = water.waves->sea();
+  const SeaExpansion& expansion = water.waves->sea().expansion();
   const double steepness = expansion.amplitude_sums[1];
   const double phase =
       1e-14 + kEpsilon * static_cast<double>(sea.components().size()) +

@@ -46,7 +46,7 @@ WaterAtTime::Change WaterAtTime::move_to(const std::shared_ptr<const SeaPeriod>&
   }
   utime_ = utime;
   lead_time_ = lead_time;
-  const bool moves = has_waves && waves_->snapshot().amplitude_factor() > 0.0;
+  const bool moves = has_waves && waves_->amplitude_factor() > 0.0;
   return {{&period_->water, moves ? &*waves_ : nullptr}, changed};
 }
 

@@ -221,7 +221,7 @@ void define_sea(py::module_& module) {
   type.def("__repr__", [](py::handle self) {
     const QuerySea& sea = instance_of<SeaObject>(self).sea;
     if (sea.waves() == nullptr) return std::string("<buoyancy.Sea at rest>");
-    return "<buoyancy.Sea of " + std::to_string(sea.waves()->sea().components().size()) + " wave components>";
+    return "<buoyancy.Sea of " + std::to_string(sea.waves()->components().size()) + " wave components>";
   });
 }
 

@@ -25,7 +25,7 @@ class MovingSea {
       now_->set_time(utime, 0.0);
     }
     utime_ = utime;
-    return now_->snapshot().amplitude_factor() > 0.0 ? &*now_ : nullptr;
+    return now_->amplitude_factor() > 0.0 ? &*now_ : nullptr;
   }
 
  private:

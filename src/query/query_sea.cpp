@@ -13,7 +13,7 @@ constexpr double kTimePerComponent = 10.0;  // [ns], rough
 
 double time_per_point(const QuerySea& sea) {
   if (sea.waves() == nullptr) return 1.0;
-  return kTimePerComponent * static_cast<double>(sea.waves()->sea().prepared().size());
+  return kTimePerComponent * static_cast<double>(sea.waves()->prepared().size());
 }
 
 // The water at a point under a surface without waves.
@@ -57,7 +57,7 @@ void sea_elevations(const QuerySea& sea, std::span<const double> x1, std::span<c
     MovingSea moving(sea.waves().get());
     for (std::size_t i = begin; i < end; ++i) {
       const SeaAtTime* const now = moving.at(utimes[utimes.size() == 1 ? 0 : i]);
-      out[i] = now == nullptr ? 0.0 : now->snapshot().elevation(x1[i], x2[i]);
+      out[i] = now == nullptr ? 0.0 : now->elevation(x1[i], x2[i]);
     }
   });
 }
@@ -69,7 +69,7 @@ void water_at_points(const QuerySea& sea, std::span<const double> points,
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 p_W{points[3 * i], points[3 * i + 1], points[3 * i + 2]};
       const SeaAtTime* const now = moving.at(utimes[utimes.size() == 1 ? 0 : i]);
-      const WaterAtPoint point = now == nullptr ? without_waves(sea.water(), p_W) : now->snapshot().at(p_W);
+      const WaterAtPoint point = now == nullptr ? without_waves(sea.water(), p_W) : now->at(p_W);
       if (!out.pressures.empty()) out.pressures[i] = point.pressure;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto n = static_cast<Eigen::Index>(axis);

@@ -272,7 +272,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
   Expected<std::shared_ptr<const PreparedSea>> sea = make_sea(description);
   if (!sea) return make_error(std::move(sea.error()));
   scene.sea_ = *std::move(sea);
-  if (scene.sea_ != nullptr) scene.wave_systems_ = report_wave_systems(description.sea, scene.sea_->sea());
+  if (scene.sea_ != nullptr) scene.wave_systems_ = report_wave_systems(description.sea, *scene.sea_);
   const bool has_waves = scene.sea_ != nullptr || scene.receives_sea_;
   if (has_waves) {
     for (const BodyDescription& body : description.bodies) {

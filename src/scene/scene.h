@@ -70,7 +70,7 @@ class Scene {
   const Water& water() const { return water_; }
   // The sea that the file describes; nullptr if the water is at rest (no amplitude is above 0), and if waves
   // are received.
-  const Sea* sea() const { return sea_ == nullptr ? nullptr : &sea_->sea(); }
+  const Sea* sea() const { return sea_ == nullptr ? nullptr : sea_.get(); }
   const std::shared_ptr<const PreparedSea>& prepared_sea() const { return sea_; }  // of sea()
   // Does the sea come in messages (waves = "received")?
   bool receives_sea() const { return receives_sea_; }

@@ -26,17 +26,17 @@ constexpr double kRoundingMargin = 1.0 + 1e-12;
 
 }  // namespace
 
-PreparedSea::PreparedSea(Sea sea) : sea_(std::move(sea)), expansion_(sea_) {
-  assert(!sea_.is_still());
-  const PreparedComponents& components = sea_.prepared();
+PreparedSea::PreparedSea(Sea sea) : Sea(std::move(sea)), expansion_(*this) {
+  assert(!is_still());
+  const PreparedComponents& components = prepared();
   const std::vector<double>& k = components.wave_number;
   const double k_max = expansion_.k_max;
-  const double deepest = std::min(kDeepest / *std::min_element(k.begin(), k.end()), sea_.depth());
+  const double deepest = std::min(kDeepest / *std::min_element(k.begin(), k.end()), depth());
   for (std::size_t row = 0;; ++row) {
-    const double z = -std::min(depth_of(row, k_max), sea_.depth());
+    const double z = -std::min(depth_of(row, k_max), depth());
     double sum = 0.0;
     for (std::size_t i = 0; i < components.size(); ++i) {
-      sum += components.amplitude[i] * k[i] * decay(k[i], z, sea_.depth());
+      sum += components.amplitude[i] * k[i] * decay(k[i], z, depth());
     }
     max_gradients_.push_back(kRoundingMargin * sum);
     if (-z >= deepest) break;
@@ -52,7 +52,7 @@ double PreparedSea::max_gradient(double z) const {
 }
 
 double SeaAtTime::max_elevation() const {
-  return kRoundingMargin * snapshot_.amplitude_factor() * sea_->expansion().amplitude_sums[0];
+  return kRoundingMargin * amplitude_factor() * sea_->expansion().amplitude_sums[0];
 }
 
 }  // namespace buoyancy

@@ -9,7 +9,7 @@
 
 namespace buoyancy {
 
-class PreparedSea {
+class PreparedSea : public Sea {
  public:
   // sea: not still. Complexity: O(components), about 1 us per component.
   explicit PreparedSea(Sea sea);
@@ -17,7 +17,6 @@ class PreparedSea {
   PreparedSea(const PreparedSea&) = delete;
   PreparedSea& operator=(const PreparedSea&) = delete;
 
-  const Sea& sea() const { return sea_; }
   const SeaExpansion& expansion() const { return expansion_; }
 
   // Bound on the norm of the gradient of the wave pressure over rho g, at full amplitudes, at and below this
@@ -25,30 +24,24 @@ class PreparedSea {
   double max_gradient(double z) const;
 
  private:
-  Sea sea_;
   SeaExpansion expansion_;
   std::vector<double> max_gradients_;  // at heights that descend from 0, see depth_of() in the source
 };
 
-// A sea at one instant, for the queries of one request.
-class SeaAtTime {
+// A prepared sea at one instant, for the queries of one request.
+class SeaAtTime : public SeaSnapshot {
  public:
   // sea must outlive this object.
-  explicit SeaAtTime(const PreparedSea& sea) : sea_(&sea), snapshot_(sea.sea()) {}
+  explicit SeaAtTime(const PreparedSea& sea) : SeaSnapshot(sea), sea_(&sea) {}
   SeaAtTime(const PreparedSea& sea, std::int64_t utime, double lead_time = 0.0)
-      : sea_(&sea), snapshot_(sea.sea(), utime, lead_time) {}
+      : SeaSnapshot(sea, utime, lead_time), sea_(&sea) {}
 
-  // See SeaSnapshot::set_time().
-  void set_time(std::int64_t utime, double lead_time) { snapshot_.set_time(utime, lead_time); }
-
-  const PreparedSea& prepared() const { return *sea_; }
-  const SeaSnapshot& snapshot() const { return snapshot_; }
+  const PreparedSea& sea() const { return *sea_; }
   // [m], no crest is higher and no trough deeper at this instant; with a margin for rounding.
   double max_elevation() const;
 
  private:
   const PreparedSea* sea_;
-  SeaSnapshot snapshot_;
 };
 
 }  // namespace buoyancy

@@ -26,7 +26,7 @@ Water with_level(Water water, double level) {
 
 // Against the highest crest and the lowest trough: kDry and kSubmerged are certain.
 Immersion immersion_in_waves(const HydrostaticMesh& mesh, const SeaAtTime& sea, const Pose& pose) {
-  const Water& water = sea.prepared().sea().water();
+  const Water& water = sea.sea().water();
   const double elevation = sea.max_elevation();
   if (quick_immersion(mesh, pose, with_level(water, water.level + elevation)) == Immersion::kDry) {
     return Immersion::kDry;
@@ -39,7 +39,7 @@ Immersion immersion_in_waves(const HydrostaticMesh& mesh, const SeaAtTime& sea, 
 
 // Where the box reaches below the bed, the lowest vertex decides if it is known.
 bool reaches_below_bed(const HydrostaticMesh& mesh, const SeaAtTime& sea, const Pose& pose) {
-  const Sea& of_sea = sea.prepared().sea();
+  const Sea& of_sea = sea.sea();
   if (std::isinf(of_sea.depth())) return false;
   const Vec3& up_W = of_sea.water().up_W;
   const Mat3 R_WB = pose.q_WB.normalized().toRotationMatrix();
@@ -52,13 +52,13 @@ bool reaches_below_bed(const HydrostaticMesh& mesh, const SeaAtTime& sea, const 
 
 // [m], sum of a k^n now.
 double amplitude_sum(const SeaAtTime& sea, std::size_t n) {
-  return sea.snapshot().amplitude_factor() * sea.prepared().expansion().amplitude_sums[n];
+  return sea.amplitude_factor() * sea.sea().expansion().amplitude_sums[n];
 }
 
 // [m], bound on what the rounding of positions changes in heights over the surface.
 double position_rounding(const HydrostaticMesh& mesh, const SeaAtTime& sea, const Pose& pose) {
   const double distance =
-      pose.p_WB.lpNorm<1>() + mesh.center_B.lpNorm<1>() + std::abs(sea.prepared().sea().water().level);
+      pose.p_WB.lpNorm<1>() + mesh.center_B.lpNorm<1>() + std::abs(sea.sea().water().level);
   return 8.0 * kEpsilon * distance * (1.0 + amplitude_sum(sea, 1));
 }
 
@@ -89,12 +89,12 @@ class Boundary {
   };
 
   End end_at(const Vec3& y) const {
-    const Sea& sea = sea_.prepared().sea();
+    const Sea& sea = sea_.sea();
     const Vec3 p_W = p_WC_ + R_WB_ * y;
     const double zeta = sea.water().up_W.dot(p_W) - sea.water().level;
     const double crest = sea_.max_elevation();
     if (zeta > crest) return {y, zeta, zeta - crest};
-    return {y, zeta, zeta - sea_.snapshot().elevation(sea.axes().e1_W.dot(p_W), sea.axes().e2_W.dot(p_W))};
+    return {y, zeta, zeta - sea_.elevation(sea.axes().e1_W.dot(p_W), sea.axes().e2_W.dot(p_W))};
   }
 
   bool is_dry(const End& a, const End& b, int halvings) const {
@@ -133,24 +133,24 @@ WaveLoad load_of(const Solver& solver, const WaveMesh& wave_mesh, const SeaAtTim
                  const Vec3& reference_B) {
   switch (solver.method()) {
     case Method::kFastSurface:
-      return fast_surface_in_waves(solver.mesh(), sea.snapshot(), pose, reference_B);
+      return fast_surface_in_waves(solver.mesh(), sea, pose, reference_B);
     case Method::kExactSurface:
-      return exact_surface_in_waves(solver.mesh(), sea.snapshot(), pose, reference_B);
+      return exact_surface_in_waves(solver.mesh(), sea, pose, reference_B);
     default:
       assert(solver.method() == Method::kHierarchical);
-      return wave_load({&solver.mesh(), &wave_mesh.patches, solver.tolerance()}, sea.prepared().expansion(),
-                       sea.snapshot(), pose, reference_B);
+      return wave_load({&solver.mesh(), &wave_mesh.patches, solver.tolerance()}, sea.sea().expansion(), sea,
+                       pose, reference_B);
   }
 }
 
 // Bound on the force of waves over rho g V on a body that is wet everywhere (docs/wave_mathematics.md, "Deep,
 // calm, high"). highest: [m], height over the level of the body's bounds.
 double max_wave_force_per_volume(const SeaAtTime& sea, double highest) {
-  const PreparedSea& prepared = sea.prepared();
+  const PreparedSea& prepared = sea.sea();
   const double slope = amplitude_sum(sea, 1);
-  if (prepared.sea().pressure() == WavePressure::kHydrostatic) return slope;
-  const double h = prepared.sea().depth();
-  if (highest < -h) return sea.snapshot().amplitude_factor() * prepared.max_gradient(-h);
+  if (prepared.pressure() == WavePressure::kHydrostatic) return slope;
+  const double h = prepared.depth();
+  if (highest < -h) return sea.amplitude_factor() * prepared.max_gradient(-h);
   const double elevation = sea.max_elevation();
   const double depth = -(highest + elevation);  // under the lowest trough
   if (!(depth > 0.0)) return std::numeric_limits<double>::infinity();
@@ -167,8 +167,7 @@ double max_wave_force_per_volume(const SeaAtTime& sea, double highest) {
   const double trace = 1.0 + largest_stretch * largest_stretch + shear * shear;
   const double root = std::sqrt(std::max(trace * trace - 4.0 * largest_stretch * largest_stretch, 0.0));
   const double norm = std::sqrt(0.5 * (trace + root));
-  return sea.snapshot().amplitude_factor() * prepared.max_gradient(-least_stretch * depth) *
-         std::max(norm, 1.0);
+  return sea.amplitude_factor() * prepared.max_gradient(-least_stretch * depth) * std::max(norm, 1.0);
 }
 
 }  // namespace
@@ -196,7 +195,7 @@ WaveMesh make_wave_mesh(const HydrostaticMesh& mesh) {
 WaveBuoyancyResult buoyancy_in_waves(const Solver& solver, const WaveMesh& wave_mesh, const SeaAtTime& sea,
                                      const Pose& pose, const Vec3& reference_B) {
   const HydrostaticMesh& mesh = solver.mesh();
-  const Water& water = sea.prepared().sea().water();
+  const Water& water = sea.sea().water();
   WaveBuoyancyResult outcome;
   BuoyancyResult& result = outcome.result;
   result.immersion = immersion_in_waves(mesh, sea, pose);
@@ -254,7 +253,7 @@ bool try_buoyancy_in_waves_from_bounds(const Solver& solver, const FullySubmerge
     return true;
   }
   if (solver.method() != Method::kHierarchical) return false;
-  const Water& water = sea.prepared().sea().water();
+  const Water& water = sea.sea().water();
   // The box of the mesh lies between these heights over the level.
   const RoughWaterPlane plane = rough_water_plane_in_body(pose, water, mesh.center_B, mesh.diagonal);
   const Vec3 up_B = plane.up_B.vec3();

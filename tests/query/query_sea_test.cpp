@@ -31,7 +31,7 @@ TEST(QuerySea, ReadsTheKeysOfASceneFile) {
   EXPECT_EQ(sea.water().level, 2.0);
   EXPECT_EQ(sea.water().up_W, Vec3::UnitY());
   ASSERT_NE(sea.waves(), nullptr);
-  EXPECT_EQ(sea.waves()->sea().depth(), 30.0);
+  EXPECT_EQ(sea.waves()->depth(), 30.0);
   EXPECT_EQ(sea_of("").waves(), nullptr);
   EXPECT_EQ(sea_of("[water]\nwaves = { type = \"regular\", height = 0.0, period = 3 }").waves(), nullptr);
 }
@@ -55,7 +55,7 @@ TEST(QuerySea, WaterMovesWithTheCurrentToo) {
     water_at_points(sea, point, std::vector<std::int64_t>{kNow}, {{}, velocity, {}});
     Vec3 expected(1.0, -2.0, 0.5);
     if (sea.waves() != nullptr) {
-      expected += SeaSnapshot(sea.waves()->sea(), kNow).at({1.0, 2.0, -0.5}).velocity_W;
+      expected += SeaSnapshot(*sea.waves(), kNow).at({1.0, 2.0, -0.5}).velocity_W;
     }
     for (int i = 0; i < 3; ++i) EXPECT_EQ(velocity[static_cast<std::size_t>(i)], expected[i]);
   }
@@ -80,7 +80,7 @@ TEST(QuerySea, HasTheWaterOfASnapshotAtEveryPoint) {
         accelerations(3 * kPoints);
     sea_elevations(sea, x1, x2, utimes, elevations, threads);
     water_at_points(sea, points, utimes, {pressures, velocities, accelerations}, threads);
-    SeaSnapshot snapshot(sea.waves()->sea());
+    SeaSnapshot snapshot(*sea.waves());
     for (std::size_t i = 0; i < kPoints; ++i) {
       snapshot.set_time(utimes[i]);
       EXPECT_EQ(elevations[i], snapshot.amplitude_factor() > 0.0 ? snapshot.elevation(x1[i], x2[i]) : 0.0);

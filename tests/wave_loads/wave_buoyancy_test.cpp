@@ -37,7 +37,7 @@ struct InSea {
   }
   WaveBuoyancyResult at(double height) const { return at(raised(height)); }
   bool try_from_bounds(double height, WaveBuoyancyResult& outcome) const {
-    const FullySubmerged submerged = submerged_constants(mesh, prepared.sea().water(), Vec3::Zero());
+    const FullySubmerged submerged = submerged_constants(mesh, prepared.water(), Vec3::Zero());
     return try_buoyancy_in_waves_from_bounds(solver, submerged, sea, raised(height), Vec3::Zero(), outcome);
   }
 
@@ -65,7 +65,7 @@ TEST(WaveBuoyancy, BoundsTheVolume) {
     Pose pose;
     pose.p_WB.z() = height;
     const WaveBuoyancyResult outcome = body.at(height);
-    const ReferenceLoad truth = true_wave_load(body.mesh, body.prepared.sea(), 1'000'000, pose, 1e-4);
+    const ReferenceLoad truth = true_wave_load(body.mesh, body.prepared, 1'000'000, pose, 1e-4);
     EXPECT_LE(std::abs(outcome.result.volume - truth.volume), outcome.volume_error_bound + truth.volume_error)
         << height;
     EXPECT_LE(outcome.volume_error_bound, 2e-3 * body.mesh.volume);
@@ -84,17 +84,17 @@ SeaDescription half_grown(WavePressure pressure, double depth) {
 // docs/wave_mathematics.md, "Deep, calm, high": bound on the force of the waves over rho g V on a body whose
 // highest point is at this height over the level.
 double deep_bound(const SeaAtTime& sea, double highest) {
-  const PreparedComponents& waves = sea.prepared().sea().prepared();
-  const double factor = sea.snapshot().amplitude_factor();
-  const double h = sea.prepared().sea().depth();
+  const PreparedComponents& waves = sea.sea().prepared();
+  const double factor = sea.amplitude_factor();
+  const double h = sea.sea().depth();
   double crest = 0.0;  // A_0
   double slope = 0.0;  // L_1
   for (std::size_t i = 0; i < waves.size(); ++i) {
     crest += factor * waves.amplitude[i];
     slope += factor * waves.amplitude[i] * waves.wave_number[i];
   }
-  if (sea.prepared().sea().pressure() == WavePressure::kHydrostatic) return slope;
-  if (highest < -h) return factor * sea.prepared().max_gradient(-h);
+  if (sea.sea().pressure() == WavePressure::kHydrostatic) return slope;
+  if (highest < -h) return factor * sea.sea().max_gradient(-h);
   const double least = std::isinf(h) ? 1.0 : h / (h + crest);
   const double q = std::isinf(h) ? 1.0 : h / (h - crest);
   const double w = std::isinf(h) ? 1.0 : 1.0 + highest / h;
@@ -102,7 +102,7 @@ double deep_bound(const SeaAtTime& sea, double highest) {
   Eigen::Matrix2d derivative;
   derivative << 1.0, 0.0, w * q * q * slope, q;
   const double norm = Eigen::JacobiSVD<Eigen::Matrix2d>(derivative).singularValues()[0];
-  return factor * sea.prepared().max_gradient(least * (highest + crest)) * norm;
+  return factor * sea.sea().max_gradient(least * (highest + crest)) * norm;
 }
 
 TEST(WaveBuoyancy, BoundsTheWavesOnADeepBodyByTheFormula) {
@@ -121,8 +121,8 @@ TEST(WaveBuoyancy, BoundsTheWavesOnADeepBodyByTheFormula) {
       for (const double center : {-0.9, -1.4, -2.5, -6.0, -20.0}) {
         Pose pose;
         pose.q_WB = Eigen::Quaterniond(0.8, 0.3, -0.4, 0.2).normalized();
-        pose.p_WB = (water.level + center) * water.up_W + 40.0 * prepared.sea().axes().e1_W -
-                    pose.q_WB * mesh.center_B;
+        pose.p_WB =
+            (water.level + center) * water.up_W + 40.0 * prepared.axes().e1_W - pose.q_WB * mesh.center_B;
         double highest = -kInfinity;
         for (std::size_t i = 0; i < box.vertex_count(); ++i) {
           const Vec3 p_W = pose.p_WB + pose.q_WB * box.vertex(static_cast<std::int32_t>(i));
@@ -149,7 +149,7 @@ TEST(WaveBuoyancy, BoundsTheWavesOnADeepBodyByTheFormula) {
 TEST(PreparedSea, BoundsTheGradientByThatOfTheRowAbove) {
   for (const double depth : {kInfinity, 12.0, 3.0}) {
     const PreparedSea prepared(Sea::make(half_grown(WavePressure::kWheeler, depth), {}).value());
-    const PreparedComponents& waves = prepared.sea().prepared();
+    const PreparedComponents& waves = prepared.prepared();
     const auto sum_at = [&](double z) {
       double sum = 0.0;
       for (std::size_t i = 0; i < waves.size(); ++i) {
@@ -241,9 +241,9 @@ TEST(WaveBuoyancy, SaysThatABodyReachesBelowTheBed) {
 TEST(WaveBuoyancy, BelowTheBedIsThatOfTheWavesAtTheBed) {
   const RegularWave wave{0.4, 3.0, 0.0, 0.0};
   const OverBed body(2.0, wave);
-  const Water& water = body.prepared.sea().water();
+  const Water& water = body.prepared.water();
   const double weight = water.density * water.gravity * body.mesh.volume;
-  const double k = body.prepared.sea().prepared().wave_number[0];
+  const double k = body.prepared.prepared().wave_number[0];
   const double phase = -2.0 * std::numbers::pi / wave.period * 0.4;
   // The mean of -d/dx (a cos(k x + phase) / cosh kh) over the box.
   const double slope =

@@ -22,7 +22,8 @@ Json sea_json(const Sea& sea) {
 }
 
 Json sea_json(const SeaPeriod& period) {
-  return sea_json(period.sea ? period.sea->sea() : Sea::make({}, period.water).value());
+  if (period.sea) return sea_json(*period.sea);
+  return sea_json(Sea::make({}, period.water).value());
 }
 
 double sea_time(const Sea& sea, std::int64_t utime, double lead_time) {
@@ -35,7 +36,7 @@ double sea_time(const Sea& sea, std::int64_t utime, double lead_time) {
 }
 
 double sea_time(const SeaPeriod& period, std::int64_t utime, double lead_time) {
-  return period.sea ? sea_time(period.sea->sea(), utime, lead_time) : 0.0;
+  return period.sea ? sea_time(*period.sea, utime, lead_time) : 0.0;
 }
 
 }  // namespace buoyancy::view
