@@ -1,11 +1,11 @@
 // buoyancy-hydrostatics: the program around equilibria, righting arms and hydrostatic tables.
-#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include <CLI/App.hpp>
 
+#include "base/angles.h"
 #include "base/format.h"
 #include "base/json.h"
 #include "base/text_file.h"
@@ -41,7 +41,7 @@ std::optional<Error> missing_heels(const RightingCurve& curve) {
   for (const std::optional<double>& heel : {curve.unbalanced_starboard, curve.unbalanced_port}) {
     if (!heel) continue;
     if (!heels.empty()) heels += " and of ";
-    heels += format_number(*heel * 180.0 / std::numbers::pi, 4) + " degrees";
+    heels += format_number(*heel * kDegreesPerRadian, 4) + " degrees";
   }
   if (heels.empty()) return std::nullopt;
   return no_balance(heels + "; there are results only between it and heel 0");

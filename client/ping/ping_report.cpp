@@ -1,8 +1,6 @@
 #include "client/ping/ping_report.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 #include "base/format.h"
 #include "base/json.h"
@@ -11,14 +9,6 @@ namespace buoyancy::ping {
 namespace {
 
 constexpr std::size_t kMaxBodiesShown = 20;
-
-template <typename... Arguments>
-void append_line(std::string& text, const char* format, Arguments... arguments) {
-  std::array<char, 512> line{};
-  std::snprintf(line.data(), line.size(), format, arguments...);
-  text += line.data();
-  text += '\n';
-}
 
 // The largest difference of a body over its limit, of all checks.
 double worst_of(const BodyChecks& body) {

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "base/angles.h"
 #include "base/csv_field.h"
 #include "base/format.h"
 #include "cli/channel_options.h"
@@ -19,7 +19,6 @@
 namespace buoyancy::service {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr std::array<std::pair<const char*, HydrostaticsCommand>, 3> kCommands{
     {{"equilibrium", HydrostaticsCommand::kEquilibrium},
      {"table", HydrostaticsCommand::kTable},

@@ -3,19 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include <spdlog/fmt/fmt.h>
 
+#include "base/angles.h"
 #include "service/hydrostatics/table_columns.h"
 
 namespace buoyancy::service {
 namespace {
-
-constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 double degrees(double radians) {
   return radians * kDegreesPerRadian;

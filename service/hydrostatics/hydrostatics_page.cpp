@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/angles.h"
 #include "base/json.h"
+#include "flotation/displaced_sum.h"
 #include "service/hydrostatics/table_columns.h"
 #include "view/page/base64.h"
 #include "view/page/mesh_drawing.h"
@@ -17,7 +19,6 @@
 namespace buoyancy::service {
 namespace {
 
-constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 constexpr std::size_t kStateNumbers = 19;
 
 constexpr TableColumn kHeel{"heel", "Heel", "°"};
@@ -32,15 +33,6 @@ std::vector<std::size_t> evenly_chosen(std::size_t count, std::size_t max) {
     numbers.push_back(chosen == count ? i : i * (count - 1) / (chosen - 1));
   }
   return numbers;
-}
-
-// [m], of the body with the liquids in its tanks. up_B: unit.
-Vec3 total_center_of_mass_B(const FloatingBody& body, const Vec3& up_B) {
-  LiquidSum liquids;
-  for (const Tank& tank : body.tanks()) {
-    add_liquid(tank, tank_liquid(tank, up_B), body.center_of_mass_B(), liquids);
-  }
-  return body.center_of_mass_B() + liquids.moment / body.total_mass();
 }
 
 using State = std::array<double, kStateNumbers>;
@@ -58,7 +50,8 @@ State state_at(const PageSubject& subject, const Pose& pose) {
   add(force_W);
   add(hydrostatics.center_of_buoyancy_W);
   add(hydrostatics.metacenters_W[0]);
-  add(total_center_of_mass_B(*subject.body, pose.q_WB.conjugate() * water.up_W));
+  const Vec3 up_B = pose.q_WB.conjugate() * water.up_W;
+  add(total_center_of_mass_B(*subject.body, liquid_sum(*subject.body, up_B, FreeSurfaces::kNo)));
   return state;
 }
 

@@ -42,8 +42,8 @@ Expected<LoadedBody> load_body(const HydrostaticsOptions& options, const Hydrost
   const Expected<const Body*> body = body_of(*scene, options.body);
   if (!body) return tl::unexpected(body.error());
 
-  Expected<BodyMass> mass =
-      BodyMass{.mass = options.mass.value_or(0.0), .center_of_mass_B = plan.center_of_mass_B};
+  Expected<RigidBodyMass> mass =
+      RigidBodyMass{.mass = options.mass.value_or(0.0), .center_of_mass_B = plan.center_of_mass_B};
   if (options.mesh.empty()) mass = mass_of_body(**body, scene->water());
   if (options.mesh.empty() && !(*body)->dynamics.given) {
     mass = make_error({scene->name() + ": body '" + (*body)->name + "'", "no section [body.client]",

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include <spdlog/fmt/fmt.h>
 
+#include "base/angles.h"
+
 namespace buoyancy::service {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr double kThirty = 30.0 * kRadiansPerDegree;
 constexpr double kForty = 40.0 * kRadiansPerDegree;
 constexpr int kMaxHeel = 90;  // [degrees], of the criteria

@@ -1,12 +1,12 @@
 #include "service/hydrostatics/table_columns.h"
 
 #include <array>
-#include <numbers>
+
+#include "base/angles.h"
 
 namespace buoyancy::service {
 namespace {
 
-constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 constexpr double kTonnesPerKilogram = 1e-3;
 
 constexpr std::array kColumns{TableColumn{"draft", "Draft", "m"},

@@ -1,7 +1,9 @@
 // Formats numbers, vectors and counts for reports and error messages.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <cstdio>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -28,6 +30,15 @@ std::string format_values(std::string_view pattern, std::initializer_list<Format
 template <typename... Values>
 std::string format_text(std::string_view pattern, const Values&... values) {
   return format_values(pattern, {FormatValue(values)...});
+}
+
+// Appends a line of columns: a printf format and its values, at most 511 characters.
+template <typename... Values>
+void append_line(std::string& text, const char* format, Values... values) {
+  std::array<char, 512> line{};
+  std::snprintf(line.data(), line.size(), format, values...);
+  text += line.data();
+  text += '\n';
 }
 
 // Formats as "1 hole" or "5 holes".

@@ -56,7 +56,7 @@ bool is_finite(const BuoyancyResult& result) {
 // [m], of body and liquids, in B; nullopt if the scene does not define the mass. liquids: about B's origin.
 std::optional<Vec3> total_center_of_mass(const Body& body, const Water& water, const LiquidSum& liquids) {
   if (!body.center_of_mass_B || !(liquids.mass > 0.0)) return body.center_of_mass_B;
-  const Expected<BodyMass> own = mass_of_body(body, water);
+  const Expected<RigidBodyMass> own = mass_of_body(body, water);
   if (!own) return std::nullopt;
   const Weights weights = weights_of(*own, liquids, Vec3::Zero());
   return Vec3(weights.moment / weights.mass);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/angles.h"
 #include "base/format.h"
 #include "flotation/displaced_sum.h"
 #include "hydrostatics/triangle_clip.h"
@@ -149,7 +150,7 @@ std::optional<HydrostaticRow> HydrostaticTable::row(double draft, double trim) c
   row.mass_per_cm = 0.01 * water_.density * row.waterplane_area;
   row.moment_per_cm = (row.mass * (row.km_l - kg) - rise(forward_in_water)) / (100.0 * lpp_);
   row.moment_per_degree =
-      (row.mass * (row.km_t - kg) - rise(up_B.cross(forward_in_water))) * std::sin(std::numbers::pi / 180.0);
+      (row.mass * (row.km_t - kg) - rise(up_B.cross(forward_in_water))) * std::sin(kRadiansPerDegree);
 
   row.wetted_area = wetted_area_sum(*body_, plane);
   row.midship_area = immersed_section(draft);

@@ -5,12 +5,13 @@
 #include <functional>
 #include <numbers>
 
+#include "base/angles.h"
 #include "flotation/balance.h"
 
 namespace buoyancy {
 namespace {
 
-constexpr double kMaxTrim = 89.0 * std::numbers::pi / 180.0;
+constexpr double kMaxTrim = 89.0 * kRadiansPerDegree;
 
 struct TrimmedBody {
   double trim = 0.0;

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/angles.h"
 #include "base/format.h"
 #include "scene/body_key.h"
 #include "scene/body_warning_list.h"
@@ -17,7 +18,6 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kNoLever = 1e-6;   // over the body's reach: rounding, or that of a generated mesh
 constexpr double kStays = 1e-3;     // [rad]
 constexpr double kSameTurn = 1e-4;  // [rad], between an attitude and the same one found from another start
@@ -97,7 +97,7 @@ void add_warnings(const Body& body, const BodyFlotation& flotation, BodyWarningL
               "an open mesh whose boundary stays dry", "an orientation far from those at which it floats",
               "Start near one of the attitudes that --check lists"});
   }
-  const std::string degrees = format_number(flotation.turn * kDegrees, 4) + " degrees";
+  const std::string degrees = format_number(flotation.turn * kDegreesPerRadian, 4) + " degrees";
   if (flotation.turn > 0.5 * std::numbers::pi) {
     list.add(
         body,
@@ -123,7 +123,7 @@ std::vector<FlotationOfBody> scene_flotation(const Scene& scene, std::size_t max
   std::size_t vertices = 0;
   for (const Body& body : scene.bodies()) {
     FlotationOfBody& entry = bodies.emplace_back();
-    const Expected<BodyMass> own = mass_of_body(body, scene.water());
+    const Expected<RigidBodyMass> own = mass_of_body(body, scene.water());
     if (!body.dynamics.given || !own) continue;
     BodyKey key = keys.floating(body, *own);
     append_direction(body.dynamics.orientation.normalized().conjugate() * scene.water().up_W, key);
@@ -151,7 +151,7 @@ std::vector<Warning> flotation_warnings(const Scene& scene, const std::vector<Fl
     const Body& body = scene.bodies()[i];
     if (flotation[i].flotation) add_warnings(body, *flotation[i].flotation, list);
     if (flotation[i].flotation || flotation[i].left_out || !body.dynamics.given) continue;
-    Expected<BodyMass> mass = mass_of_body(body, scene.water());
+    Expected<RigidBodyMass> mass = mass_of_body(body, scene.water());
     if (mass) continue;
     mass.error().subject.clear();
     list.add(body, std::move(mass.error()));

@@ -19,7 +19,7 @@ double BodyKeys::index_of(const PreparedMesh& mesh) const {
   return mesh_index_.at(&mesh);
 }
 
-BodyKey BodyKeys::floating(const Body& body, const BodyMass& own) const {
+BodyKey BodyKeys::floating(const Body& body, const RigidBodyMass& own) const {
   BodyKey key{index_of(*body.prepared_mesh), own.mass};
   append(own.center_of_mass_B, key);
   if (body.subdivision == nullptr) return key;

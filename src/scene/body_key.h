@@ -27,7 +27,7 @@ class BodyKeys {
   explicit BodyKeys(const Scene& scene);
 
   // Of what floats: mesh, mass, compartments and tanks as in the scene file.
-  BodyKey floating(const Body& body, const BodyMass& own) const;
+  BodyKey floating(const Body& body, const RigidBodyMass& own) const;
 
  private:
   double index_of(const PreparedMesh& mesh) const;

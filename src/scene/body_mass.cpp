@@ -74,7 +74,7 @@ std::optional<Vec3> given_center_of_mass(const DynamicsSpec& dynamics, const Pre
   return prepared.mass_properties.centroid_B;
 }
 
-Expected<BodyMass> mass_of_body(const Body& body, const Water& water) {
+Expected<RigidBodyMass> mass_of_body(const Body& body, const Water& water) {
   const DynamicsSpec& spec = body.dynamics;
   const MassProperties& enclosed = body.prepared_mesh->mass_properties;
   if (body.prepared_mesh->mesh.is_open()) {
@@ -92,7 +92,7 @@ Expected<BodyMass> mass_of_body(const Body& body, const Water& water) {
                          "Set what is missing, or close the mesh"});
     }
   }
-  BodyMass result;
+  RigidBodyMass result;
   result.mass = *known_mass(body, water);
   result.center_of_mass_B = spec.center_of_mass_B.value_or(enclosed.centroid_B);
   result.inertia_B =
@@ -109,12 +109,12 @@ Expected<BodyMass> mass_of_body(const Body& body, const Water& water) {
   return result;
 }
 
-Weights weights_of(const BodyMass& own, const LiquidSum& liquids, const Vec3& about_B) {
+Weights weights_of(const RigidBodyMass& own, const LiquidSum& liquids, const Vec3& about_B) {
   return {own.mass + liquids.mass, own.mass * (own.center_of_mass_B - about_B) + liquids.moment};
 }
 
-BodyMass mass_with_liquids(const Body& body, const BodyMass& own, const BodyCondition* condition,
-                           const Vec3& up_B) {
+RigidBodyMass mass_with_liquids(const Body& body, const RigidBodyMass& own, const BodyCondition* condition,
+                                const Vec3& up_B) {
   const std::vector<Tank> tanks = tanks_of(body, condition);
   LiquidSum liquids;  // about the body's own centre of mass
   std::vector<TankLiquid> found;
@@ -123,7 +123,7 @@ BodyMass mass_with_liquids(const Body& body, const BodyMass& own, const BodyCond
     add_liquid(tank, found.back(), own.center_of_mass_B, FreeSurfaces::kNo, liquids);
   }
   if (!(liquids.mass > 0.0)) return own;
-  BodyMass sum;
+  RigidBodyMass sum;
   sum.mass = own.mass + liquids.mass;
   const Vec3 moved = liquids.moment / sum.mass;
   sum.center_of_mass_B = own.center_of_mass_B + moved;
@@ -138,7 +138,7 @@ BodyMass mass_with_liquids(const Body& body, const BodyMass& own, const BodyCond
   return sum;
 }
 
-Mat6 stiffness_of_weights(const BodyMass& own, std::span<const Tank> tanks, const Vec3& center_B,
+Mat6 stiffness_of_weights(const RigidBodyMass& own, std::span<const Tank> tanks, const Vec3& center_B,
                           const Eigen::Quaterniond& q_WB, const Water& water) {
   if (tanks.empty()) return Mat6::Zero();
   const Mat3 R_WB = q_WB.normalized().toRotationMatrix();

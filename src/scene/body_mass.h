@@ -10,20 +10,15 @@
 #include <span>
 
 #include "base/spatial.h"
+#include "hydrodynamics/coupled_mass.h"
 #include "hydrostatics/tank.h"
 #include "scene/scene.h"
 
 namespace buoyancy {
 
-struct BodyMass {
-  double mass = 0.0;                     // [kg], > 0
-  Vec3 center_of_mass_B = Vec3::Zero();  // [m], C
-  Mat3 inertia_B = Mat3::Zero();         // [kg m^2], about C
-};
-
 // The body's own, without the liquids: what [body.client] gives, the rest derived from the mesh as it says.
 // Errors: an open mesh leaves something unknown; a value is not above 0 or not finite.
-Expected<BodyMass> mass_of_body(const Body& body, const Water& water);
+Expected<RigidBodyMass> mass_of_body(const Body& body, const Water& water);
 
 // The mass [kg] of mass_of_body(), and that over the volume [kg/m^3], also where the rest is unknown.
 // nullopt: unknown, since an open mesh encloses no volume.
@@ -41,19 +36,19 @@ struct Weights {
 };
 
 // own: without the liquids. liquids: about the same point.
-Weights weights_of(const BodyMass& own, const LiquidSum& liquids, const Vec3& about_B);
+Weights weights_of(const RigidBodyMass& own, const LiquidSum& liquids, const Vec3& about_B);
 
 // own: without the liquids. condition: of the tanks; nullptr: that of the scene file. up_B: unit, the
 // attitude at which the liquids are frozen. The inertia of a full tank is exact; that of another one is an
 // integral over levels, exact where the section of its liquid is a polynomial of degree 3 in the height, and
 // mostly within 1e-3 of itself. Complexity: 48 queries of hydrostatics per tank that is neither empty nor
 // full.
-BodyMass mass_with_liquids(const Body& body, const BodyMass& own, const BodyCondition* condition,
-                           const Vec3& up_B);
+RigidBodyMass mass_with_liquids(const Body& body, const RigidBodyMass& own, const BodyCondition* condition,
+                                const Vec3& up_B);
 
 // What the weights of a body and of the liquids in its tanks add to a hydrostatic stiffness about center_B
 // (hydrostatics.h): 0 about the centre of mass of a body without tanks. The free surfaces take from it.
-Mat6 stiffness_of_weights(const BodyMass& own, std::span<const Tank> tanks, const Vec3& center_B,
+Mat6 stiffness_of_weights(const RigidBodyMass& own, std::span<const Tank> tanks, const Vec3& center_B,
                           const Eigen::Quaterniond& q_WB, const Water& water);
 
 }  // namespace buoyancy

@@ -58,7 +58,7 @@ double factor(ImmersionScaling scaling, const State& state) {
 // Matrices in E about C.
 class MotionMatrices {
  public:
-  MotionMatrices(const Body& body, const BodyMass& rigid, const Water& water, const Vec3& current_W)
+  MotionMatrices(const Body& body, const RigidBodyMass& rigid, const Water& water, const Vec3& current_W)
       : coefficients_(body.hydrodynamics == nullptr ? HydrodynamicCoefficients{}
                                                     : body.hydrodynamics->coefficients()),
         center_of_mass_B_(rigid.center_of_mass_B),
@@ -134,7 +134,7 @@ struct Displaced {
 // liquids frozen at one attitude.
 class LoadedBody {
  public:
-  LoadedBody(const Body& body, const HydrostaticMesh& mesh, const BodyMass& own, const Vec3& up_B)
+  LoadedBody(const Body& body, const HydrostaticMesh& mesh, const RigidBodyMass& own, const Vec3& up_B)
       : mesh_(&mesh),
         own_(own),
         total_(mass_with_liquids(body, own, nullptr, up_B)),
@@ -142,7 +142,7 @@ class LoadedBody {
         compartments_(open_compartments(body)) {}
 
   const HydrostaticMesh& mesh() const { return *mesh_; }
-  const BodyMass& total() const { return total_; }
+  const RigidBodyMass& total() const { return total_; }
 
   Displaced submerged() const {
     const auto lever_of = [&](const HydrostaticMesh& mesh) {
@@ -196,7 +196,7 @@ class LoadedBody {
   }
 
   const HydrostaticMesh* mesh_;
-  BodyMass own_, total_;  // without and with the liquids
+  RigidBodyMass own_, total_;  // without and with the liquids
   std::vector<Tank> tanks_;
   std::vector<PlacedMesh> compartments_;
 };
@@ -261,7 +261,7 @@ bool limit_step(const MotionMatrices& matrices, const State& state, const Vec6& 
 }
 
 // Everything that the motions of a body depend on, beside the scene's water and current.
-BodyKey key_of(const Body& body, const BodyKeys& keys, const BodyMass& own) {
+BodyKey key_of(const Body& body, const BodyKeys& keys, const RigidBodyMass& own) {
   BodyKey key = keys.floating(body, own);
   append(own.inertia_B, key);
   append(body.dynamics.orientation.coeffs(), key);
@@ -292,11 +292,11 @@ double NaturalMotion::period() const {
 
 std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh& mesh, const Water& water,
                                         const Vec3& current_W) {
-  const Expected<BodyMass> own = mass_of_body(body, water);
+  const Expected<RigidBodyMass> own = mass_of_body(body, water);
   if (!own) return std::nullopt;
   const Eigen::Quaterniond q_WB = body.dynamics.orientation.normalized();
   const LoadedBody loaded(body, mesh, *own, q_WB.conjugate() * water.up_W);
-  const BodyMass& rigid = loaded.total();
+  const RigidBodyMass& rigid = loaded.total();
   const MotionMatrices matrices(body, rigid, water, current_W);
   const Vec3 up_B = matrices.R_WB().transpose() * water.up_W;
 
@@ -353,7 +353,7 @@ std::vector<MotionsOfBody> scene_motions(const Scene& scene, std::size_t max_ver
   std::size_t vertices = 0;
   for (const Body& given : scene.bodies()) {
     MotionsOfBody& entry = bodies.emplace_back();
-    const Expected<BodyMass> own = mass_of_body(given, scene.water());
+    const Expected<RigidBodyMass> own = mass_of_body(given, scene.water());
     if (!given.dynamics.given || !own) continue;
     Body body = given;
     if (const Expected<DynamicsSpec> start = starts.start_of(given)) body.dynamics = *start;

@@ -33,8 +33,8 @@ std::vector<Tank> tanks_of(const Body& body, const BodyCondition* condition) {
   return tanks;
 }
 
-Expected<FloatingBody> floating_body_of(const Body& body, const HydrostaticMesh& mesh, const BodyMass& mass,
-                                        const BodyCondition* condition) {
+Expected<FloatingBody> floating_body_of(const Body& body, const HydrostaticMesh& mesh,
+                                        const RigidBodyMass& mass, const BodyCondition* condition) {
   std::vector<PlacedMesh> meshes = open_compartments(body, condition);
   meshes.insert(meshes.begin(), {.mesh = &mesh});
   return FloatingBody::make(meshes, mass.mass, mass.center_of_mass_B, tanks_of(body, condition));

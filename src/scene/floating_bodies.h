@@ -17,7 +17,7 @@ std::vector<Tank> tanks_of(const Body& body, const BodyCondition* condition = nu
 // mesh: the body's, with its tree; it outlives the result, and so does the scene. mass: without the liquids
 // in its tanks. condition: of its compartments and tanks; nullptr: that of the scene file. Errors: those of
 // FloatingBody::make().
-Expected<FloatingBody> floating_body_of(const Body& body, const HydrostaticMesh& mesh, const BodyMass& mass,
-                                        const BodyCondition* condition = nullptr);
+Expected<FloatingBody> floating_body_of(const Body& body, const HydrostaticMesh& mesh,
+                                        const RigidBodyMass& mass, const BodyCondition* condition = nullptr);
 
 }  // namespace buoyancy

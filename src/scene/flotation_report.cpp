@@ -2,16 +2,15 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "base/angles.h"
 #include "scene/start_pose.h"
 
 namespace buoyancy {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kMaxLines = 12;
 
 // What is 0 but for rounding is 0.
@@ -22,8 +21,8 @@ double without_noise(double value, double noise) {
 Facts attitude_facts(const Equilibrium& at, bool reached, const Body& body, const Water& water) {
   const Pose pose = placed_pose(at, body.dynamics, water);
   const std::array<double, 2>& heights = at.state.hydrostatics.metacentric_heights;
-  const double heel = at.angles.heel * kDegrees;
-  const double trim = at.angles.trim * kDegrees;
+  const double heel = at.angles.heel * kDegreesPerRadian;
+  const double trim = at.angles.trim * kDegreesPerRadian;
   Facts facts;
   facts.line(reached ? "            *" : "").add("reached", reached);
   facts.add("position", pose.p_WB).add("quaternion_wxyz", pose.q_WB);
@@ -63,7 +62,7 @@ Facts flotation_facts(const BodyFlotation& flotation, const Body& body, const Wa
   }
   if (count > kMaxLines) facts.line("").say("all are listed by --check --json");
   facts.add("truncated", flotation.is_truncated);
-  facts.add("turn", flotation.reached ? std::optional(flotation.turn * kDegrees) : std::nullopt);
+  facts.add("turn", flotation.reached ? std::optional(flotation.turn * kDegreesPerRadian) : std::nullopt);
   facts.add("starts_unstable", flotation.starts_unstable);
   return facts;
 }

@@ -162,7 +162,7 @@ std::string why_unknown(const MotionsOfBody& entry, const Body& body, const Wate
     return body.hydrodynamics == nullptr ? "" : "unknown: no mass in [body.client]";
   }
   if (entry.left_out) return "left out: the bodies before it have too many vertices";
-  const Expected<BodyMass> mass = mass_of_body(body, water);
+  const Expected<RigidBodyMass> mass = mass_of_body(body, water);
   return format_text("unknown: {}", mass ? "numbers beyond double's range" : mass.error().actual);
 }
 

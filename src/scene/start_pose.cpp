@@ -104,7 +104,7 @@ Expected<DynamicsSpec> StartFinder::start_of(const Body& body) {
 }
 
 const ReachedEquilibrium* StartFinder::reached_from_orientation(const Body& body) {
-  const Expected<BodyMass> own = mass_of_body(body, scene_->water());
+  const Expected<RigidBodyMass> own = mass_of_body(body, scene_->water());
   if (!own) return nullptr;
   BodyKey key = keys_.floating(body, *own);
   append_direction(body.dynamics.orientation.normalized().conjugate() * scene_->water().up_W, key);

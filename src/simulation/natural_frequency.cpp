@@ -140,7 +140,7 @@ double natural_frequency_bound(const Body& body, const RigidBody& rigid, const W
     // Flooding adds at most what a compartment would displace, and a weight at most g m l / I twice.
     for (const PlacedMesh& compartment : rigid.contents->compartments)
       square += from_water(*compartment.mesh);
-    const BodyMass& own = rigid.contents->own;
+    const RigidBodyMass& own = rigid.contents->own;
     double moment = own.mass * (own.center_of_mass_B - rigid.center_of_mass_B).norm();  // [kg m]
     for (const Tank& tank : rigid.contents->tanks) {
       moment += tank.liquid_mass() * tank.mesh->max_lever_arm(rigid.center_of_mass_B);

@@ -18,7 +18,7 @@ namespace buoyancy {
 namespace {
 
 // Sets mass, centre of mass and inertia. Returns false where the inertia is not positive definite.
-bool set_mass(const BodyMass& mass, RigidBody& rigid) {
+bool set_mass(const RigidBodyMass& mass, RigidBody& rigid) {
   rigid.mass = mass.mass;
   rigid.center_of_mass_B = mass.center_of_mass_B;
   const Eigen::SelfAdjointEigenSolver<Mat3> principal(mass.inertia_B);
@@ -65,13 +65,13 @@ void for_each_flooded(const RigidBody& body, const Pose& pose, const Water& wate
 
 Expected<RigidBody> make_rigid_body(const Body& body, const Water& water, const BodyCondition* condition) {
   const DynamicsSpec& spec = body.dynamics;
-  const Expected<BodyMass> own = mass_of_body(body, water);
+  const Expected<RigidBodyMass> own = mass_of_body(body, water);
   if (!own) return make_error(own.error());
   RigidBody rigid;
   rigid.reference_B = body.reference_B;
   rigid.linear_damping = {spec.linear_damping, spec.linear_damping_quadratic};
   rigid.angular_damping = {spec.angular_damping, spec.angular_damping_quadratic};
-  BodyMass total = *own;
+  RigidBodyMass total = *own;
   if (body.subdivision != nullptr) {
     const Vec3 up_B = spec.orientation.normalized().conjugate() * water.up_W;
     total = mass_with_liquids(body, *own, condition, up_B);
@@ -148,7 +148,7 @@ Load total_load(const RigidBody& body, const RigidBodyState& state, const BodyWr
   Load load{buoyancy_W - weighed_mass * water.gravity * water.up_W,
             to_vec3(wrench.torque) + reference_from_center_W.cross(buoyancy_W)};
   if (body.contents) {
-    const BodyMass& own = body.contents->own;
+    const RigidBodyMass& own = body.contents->own;
     const Vec3 lever_W = state.q_WB * Vec3(own.center_of_mass_B - body.center_of_mass_B);
     load.torque_W -= own.mass * water.gravity * lever_W.cross(water.up_W);
   }

@@ -33,7 +33,7 @@ struct Damping {
 
 // What a body with compartments or tanks consists of beside its mesh.
 struct BodyContents {
-  BodyMass own;                          // without the liquids
+  RigidBodyMass own;                     // without the liquids
   std::vector<Tank> tanks;               // their meshes are owned by the scene
   std::vector<PlacedMesh> compartments;  // that are open to the sea; likewise
 };

@@ -1,25 +1,14 @@
 #include "simulation/run_summary.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <numbers>
 
+#include "base/angles.h"
+#include "base/format.h"
 #include "base/json.h"
 
 namespace buoyancy {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-template <typename... Arguments>
-void append_line(std::string& text, const char* format, Arguments... arguments) {
-  std::array<char, 512> line{};
-  std::snprintf(line.data(), line.size(), format, arguments...);
-  text += line.data();
-  text += '\n';
-}
 
 double steps_per_second(const RunSummary& summary) {
   return summary.wall_time > 0.0 ? static_cast<double>(summary.steps) / summary.wall_time : 0.0;
@@ -55,8 +44,8 @@ std::string to_text(const RunSummary& summary) {
               "heave m", "roll deg", "pitch deg", "energy drift", "energy range");
   for (const BodySummary& body : summary.bodies) {
     append_line(text, "%5d  %-20.60s %12.6g %12.6f %12.6f %10.4f %10.4f %12.2e %12.2e", body.id,
-                body.name.c_str(), body.mass, body.draft, body.heave, body.roll * kDegrees,
-                body.pitch * kDegrees, body.energy_drift, body.energy_range);
+                body.name.c_str(), body.mass, body.draft, body.heave, body.roll * kDegreesPerRadian,
+                body.pitch * kDegreesPerRadian, body.energy_drift, body.energy_range);
   }
   const LatencyPercentiles round_trip = summary.client.round_trip.percentiles();
   append_line(text, "steps       %lld of %lld (%.6g s simulated in %.3g s, %.0f steps/s)%s",
@@ -82,8 +71,8 @@ std::string to_json(const RunSummary& summary) {
                       {"mass", body.mass},
                       {"draft", body.draft},
                       {"heave", body.heave},
-                      {"roll_deg", body.roll * kDegrees},
-                      {"pitch_deg", body.pitch * kDegrees},
+                      {"roll_deg", body.roll * kDegreesPerRadian},
+                      {"pitch_deg", body.pitch * kDegreesPerRadian},
                       {"energy_drift", body.energy_drift},
                       {"energy_range", body.energy_range}});
   }

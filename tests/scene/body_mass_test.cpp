@@ -37,8 +37,8 @@ Mat3 moved(const Mat3& inertia, double mass, const Vec3& distance) {
 void expect_sum(const Scene& scene, const Vec3& up_B, double mass, const Vec3& centroid, const Mat3& inertia,
                 double tolerance) {
   const Body& body = scene.bodies().front();
-  const BodyMass own = mass_of_body(body, scene.water()).value();
-  const BodyMass sum = mass_with_liquids(body, own, nullptr, up_B);
+  const RigidBodyMass own = mass_of_body(body, scene.water()).value();
+  const RigidBodyMass sum = mass_with_liquids(body, own, nullptr, up_B);
   const double total = 400.0 + mass;
   EXPECT_NEAR(sum.mass, total, 1e-12 * total);
   const Vec3 center = (400.0 * own.center_of_mass_B + mass * centroid) / total;
@@ -72,8 +72,8 @@ TEST(BodyMass, AddsATiltedTankAsAPrism) {
 
 TEST(BodyMass, LeavesEmptyTanksOut) {
   const Scene scene = box_with(tank(0.0));
-  const BodyMass own = mass_of_body(scene.bodies().front(), scene.water()).value();
-  const BodyMass sum = mass_with_liquids(scene.bodies().front(), own, nullptr, Vec3::UnitZ());
+  const RigidBodyMass own = mass_of_body(scene.bodies().front(), scene.water()).value();
+  const RigidBodyMass sum = mass_with_liquids(scene.bodies().front(), own, nullptr, Vec3::UnitZ());
   EXPECT_EQ(sum.mass, own.mass);
   EXPECT_EQ(sum.center_of_mass_B, own.center_of_mass_B);
   EXPECT_EQ(sum.inertia_B, own.inertia_B);
@@ -85,7 +85,7 @@ TEST(BodyMass, StiffnessOfWeightsIsTheirDerivative) {
                "[[body.tank]]\nshape = { type = \"sphere\", radius = 0.3, segments = 20 }\nfill = 0.7\n");
   const Body& body = scene.bodies().front();
   const Water& water = scene.water();
-  const BodyMass own = mass_of_body(body, water).value();
+  const RigidBodyMass own = mass_of_body(body, water).value();
   const std::vector<Tank> tanks = tanks_of(body);
   const Vec3 about_B(0.3, -0.2, 0.5);
   const auto torque_W = [&](const Eigen::Quaterniond& q_WB) {

@@ -171,7 +171,7 @@ TEST(Subdivision, FloatsWithItsCompartmentsAndTanks) {
       "shape = { type = \"box\", size = [1, 1, 1] }\nposition = [-1, 0, 0]\nliquid_volume = 0.25\ndensity = "
       "800\n");
   const Body& body = scene.bodies()[0];
-  const BodyMass mass{.mass = 2000.0, .center_of_mass_B = Vec3(0, 0, -0.1)};
+  const RigidBodyMass mass{.mass = 2000.0, .center_of_mass_B = Vec3(0, 0, -0.1)};
   const FloatingBody floating = floating_body_of(body, body.prepared_mesh->mesh, mass).value();
   ASSERT_EQ(floating.volumes().size(), 2U) << "the hull and what is flooded";
   EXPECT_EQ(floating.volumes()[1].placed.signed_permeability, -0.45);
