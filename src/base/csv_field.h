@@ -1,4 +1,4 @@
-// Fields of CSV files and of arguments: numbers, and quotations for messages.
+// Splits CSV lines and command-line arguments into fields, parses numbers and quotes text for messages.
 #pragma once
 
 #include <charconv>
@@ -11,29 +11,29 @@
 
 namespace buoyancy {
 
-inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // that some programs write first
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some programs begin text files with it
 
 // Removes spaces, tabs and carriage returns at both ends.
 std::string_view trim(std::string_view text);
 
-// The fields of a line, trimmed, one after another: at least one.
+// Iterates over the comma-separated fields of a line, trimmed. Each line has at least one.
 class CsvFields {
  public:
   explicit CsvFields(std::string_view line) : rest_(line) {}
-  std::optional<std::string_view> next();  // nullopt: there are no more
+  std::optional<std::string_view> next();  // nullopt after the last field
 
  private:
   std::optional<std::string_view> rest_;
 };
 
-// The parts between separators, trimmed: at least one.
+// Returns the parts of a text between separators, trimmed: at least one.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
-// Quotes a text for a message, shortened and without control characters.
+// Quotes the first 60 bytes of a text for a message, with '?' for each that is not printable ASCII.
 std::string quote(std::string_view text);
 
-// Parses the whole text as a decimal number; false if it is none or out of the type's range. Accepts a
-// leading '+', and nan and inf where the type has them.
+// Parses the whole text as a decimal number; returns false if it is none or out of the type's range. Accepts
+// a leading '+', and nan and inf where the type has them.
 template <typename Number>
 bool parse_number(std::string_view text, Number& number) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);

@@ -1,11 +1,11 @@
 // Double-double arithmetic: an unevaluated sum hi + lo of two doubles, |lo| <= ulp(hi)/2, about 32 decimal
 // digits.
 //
-// Used where large numbers cancel almost completely: to move the water plane to other points of the body, and
-// to reduce the phases of waves.
-// Source: T. J. Dekker, "A floating-point technique for extending the available precision", Numerische
-// Mathematik 18 (1971). Relative error of each operation: below 2^-100, as long as nothing over- or
-// underflows. The same operations on vectors are in base/simd-inl.h and hydrostatics/water_plane.cpp.
+// It is used where large numbers cancel almost completely: to move the water plane to other points of the
+// body, and to reduce the phases of waves. Source: T. J. Dekker, "A floating-point technique for extending
+// the available precision", Numerische Mathematik 18 (1971). The relative error of each operation is below
+// 2^-100 as long as nothing over- or underflows. The same operations on vectors are in base/simd-inl.h and
+// hydrostatics/water_plane.cpp.
 #pragma once
 
 namespace buoyancy {

@@ -22,7 +22,7 @@ struct Error {
   std::string message() const;
 };
 
-// A warning has the same parts as an error, but ends nothing.
+// A warning has the same parts as an error, but the operation goes on.
 using Warning = Error;
 
 template <typename T>

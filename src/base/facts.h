@@ -1,4 +1,4 @@
-// The facts of a report, each stated once: they become a JSON object and lines of text.
+// Collects the facts of a report, each stated once, and returns them as a JSON object and as lines of text.
 //
 //   Facts facts;
 //   facts.line("tank").say("'{}'", tank.name);
@@ -7,7 +7,7 @@
 //   {"volume": 1.5, "mesh": 0, "fill": 0.25}          json(), with all digits
 //     tank          'ballast', 1.5 m^3, fill 0.25     text()
 //
-// A report whose text has another order than its JSON states the words or the member of a fact apart.
+// A report whose text has another order than its JSON states the words and the member separately.
 #pragma once
 
 #include <optional>
@@ -25,19 +25,19 @@ class Facts {
   // Begins a line, whose words start in column 16, or after the label where it is longer. label: empty for a
   // line that continues the one before.
   Facts& line(std::string_view label);
-  // Begins a line at its left edge; or several, that hold line feeds. Arguments as those of say().
+  // Begins a line without indentation, or several by line feeds. Takes arguments as say() does.
   template <typename... Values>
   Facts& heading(std::string_view pattern, const Values&... values) {
     return begin(format_text(pattern, values...));
   }
 
-  // Adds words to the line; pattern and values as those of format_text(). Words are separated by ", ", unless
-  // the pattern begins with a space, a semicolon or a colon.
+  // Adds words to the line, formatted as by format_text(). Words are separated by ", ", unless the pattern
+  // begins with a space, a semicolon or a colon.
   template <typename... Values>
   Facts& say(std::string_view pattern, const Values&... values) {
     return append(separator(pattern), format_text(pattern, values...));
   }
-  // The same where it applies.
+  // Adds the words only if `applies` is true.
   template <typename... Values>
   Facts& say_if(bool applies, std::string_view pattern, const Values&... values) {
     return applies ? say(pattern, values...) : *this;
@@ -49,23 +49,23 @@ class Facts {
     json_[std::string(key)] = std::forward<Value>(value);
     return *this;
   }
-  // The same, with words: pattern has one place for the value, or is empty, which says nothing.
+  // Also adds words: the pattern has one place for the value. An empty pattern adds none.
   template <typename Value>
   Facts& add(std::string_view key, const Value& value, std::string_view pattern) {
     if (!pattern.empty()) say(pattern, value);
     return add(key, value);
   }
-  // A value that may be missing is null then, and says nothing.
+  // A missing value becomes null and adds no words.
   template <typename Value>
   Facts& add(std::string_view key, const std::optional<Value>& value, std::string_view pattern) {
     return value ? add(key, *value, pattern) : add(key, nullptr);
   }
-  // A fact that is said only where it is true.
+  // Adds a member, and its words only if the value is true.
   Facts& add_flag(std::string_view key, bool value, std::string_view words);
 
-  // Adds an empty array and returns it; valid until the next member is added.
+  // Adds an empty array and returns it. The reference is valid until the next member is added.
   Json& list(std::string_view key);
-  // Adds the object of other facts as a member, or to an array, and their lines to the text.
+  // Adds the object of other facts as a member, or to the array of that name, and their lines to the text.
   Facts& include(std::string_view key, Facts other);
   Facts& include_in(std::string_view list, Facts other);
 
@@ -83,7 +83,7 @@ class Facts {
   Json json_ = Json::object();
   std::string text_;
   bool has_lines_ = false;
-  bool has_words_ = false;  // of the present line
+  bool has_words_ = false;  // of the current line
 };
 
 }  // namespace buoyancy

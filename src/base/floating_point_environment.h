@@ -10,17 +10,17 @@
 
 namespace buoyancy {
 
-// For its life, this thread rounds to nearest, keeps subnormal numbers and traps nothing, whatever the
-// program around the library has set; the end restores the program's settings and its exception flags.
-// Threads that are started meanwhile inherit the defaults.
+// While an object lives, its thread rounds to nearest, keeps subnormal numbers and traps nothing, whatever
+// the program around the library has set. The destructor restores the program's settings and exception flags.
+// Threads started meanwhile inherit the defaults.
 class DefaultFloatingPoint {
  public:
   DefaultFloatingPoint(const DefaultFloatingPoint&) = delete;
   DefaultFloatingPoint& operator=(const DefaultFloatingPoint&) = delete;
 
 #if defined(__x86_64__)
-  // About 10 ns where the x87 unit, which long double uses, has its defaults: the functions of <cfenv>, which
-  // save it as well, take some hundred.
+  // This takes about 10 ns if the x87 unit, which long double uses, has its default settings. The functions
+  // of <cfenv>, which always save that unit, take some 100 ns.
   DefaultFloatingPoint() noexcept : sse_(_mm_getcsr()) {
     std::uint16_t x87 = 0;
     __asm__ volatile("fnstcw %0" : "=m"(x87));
@@ -42,7 +42,7 @@ class DefaultFloatingPoint {
   }
 
  private:
-  // All exceptions masked, none pending; x87: extended precision.
+  // Both mask all exceptions and have none pending; the x87 unit computes in extended precision.
   static constexpr unsigned kSseDefault = 0x1F80;
   static constexpr std::uint16_t kX87Default = 0x037F;
 

@@ -20,7 +20,7 @@ struct ValueFormatter {
 
 std::string format_number(double value, int digits) {
   std::array<char, 32> text{};
-  // As printf's %g, which writes the decimal point of the program's locale.
+  // Formats as printf's %g would, but with a decimal point in every locale.
   const std::to_chars_result end =
       std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits);
   return {text.data(), end.ptr};

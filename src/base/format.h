@@ -25,7 +25,7 @@ std::string format_vector(const Vec3& vector, int digits = 9);
 using FormatValue = std::variant<double, std::int64_t, std::uint64_t, std::string_view, Vec3>;
 
 // Returns the pattern with a value in place of each {}: numbers and vectors with at most 9 significant
-// digits, or as many as {:4} says. Without values, the pattern itself, braces included.
+// digits, or as many as {:4} says. Without values it returns the pattern itself, braces included.
 std::string format_values(std::string_view pattern, std::initializer_list<FormatValue> values);
 template <typename... Values>
 std::string format_text(std::string_view pattern, const Values&... values) {

@@ -1,4 +1,4 @@
-// JSON of what reports contain: vectors, orientations and optional values, and the text of an object.
+// Converts vectors, orientations and optional values to JSON, and JSON to text.
 #pragma once
 
 #include <optional>
@@ -13,10 +13,10 @@ namespace buoyancy {
 
 using Json = nlohmann::ordered_json;  // keeps the order in which keys are added
 
-// Returns indented lines with a final newline. Non-finite numbers become null, and bytes that are not UTF-8,
-// such as those of file names, replacement characters.
+// Returns indented lines with a final newline. Non-finite numbers become null. Bytes that are not UTF-8, as
+// in some file names, become replacement characters.
 std::string json_lines(const Json& json);
-// The same in one line, without a newline: for programs and pages.
+// Returns the JSON in one line without a newline, for programs and web pages; otherwise as json_lines().
 std::string json_line(const nlohmann::json& json);
 std::string json_line(const Json& json);
 
@@ -42,7 +42,7 @@ struct adl_serializer<Eigen::Quaterniond> {
   }
 };
 
-// Null without a value.
+// null if there is no value
 template <typename T>
 struct adl_serializer<std::optional<T>> {
   template <typename JsonType>

@@ -1,6 +1,6 @@
 // A vector whose memory is placed on large pages if it is large: programs that read few and distant parts of
-// much memory then need fewer look-ups of page addresses, which cost as much as the reads themselves once
-// other work has displaced them from the caches.
+// much memory then have fewer TLB misses, each of which costs as much as the read itself once other work has
+// displaced the page tables from the caches.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The range of a number that a user gives, for checks and for the errors that name it.
+// Describes the range of a number that a user gives, for checks and for the errors that name it.
 #pragma once
 
 #include <limits>
@@ -45,7 +45,7 @@ struct NumberRange {
   }
 
   bool contains(double value) const;  // false for NaN and infinity
-  std::string describe() const;       // "a number above 0 (kg)"
+  std::string describe() const;       // "a finite number above 0 (kg)"
 };
 
 // Formats a unit as " (kg)", and none as "".

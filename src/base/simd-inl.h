@@ -1,5 +1,5 @@
-// What the SIMD kernels of several folders share: error-free sums and products, and the bits of masks.
-// Included once per instruction set, after highway.h.
+// Error-free sums and products, and the bits of masks, which the SIMD kernels of several folders share. This
+// file is included once per instruction set, after highway.h.
 #if defined(BUOYANCY_SIMD_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_SIMD_INL_H
 #undef BUOYANCY_SIMD_INL_H
@@ -23,8 +23,8 @@ HWY_INLINE V all(double value) {
   return hn::Set(hn::DFromV<V>(), value);
 }
 
-// The sums and products of double_double.h on the lanes of a vector, which may be one. Processors with a
-// fused multiply-add find the error of a product in one instruction; it has the same bits unless it
+// The functions below apply those of double_double.h to each lane of a vector. Processors with a fused
+// multiply-add compute the error of a product in one instruction; this error has the same bits unless it
 // underflows.
 template <typename V>
 struct DoubleDoubles {
@@ -63,7 +63,7 @@ HWY_INLINE DoubleDoubles<V> two_product(V a, V b) {
 #endif
 }
 
-// The lanes of a mask, of which there are at most 16, the first in the lowest bit.
+// Returns the lanes of a mask as bits, the first lane in the lowest bit. Requires at most 16 lanes.
 template <class D>
 HWY_INLINE std::uint32_t mask_bits(D d, hn::Mask<D> mask) {
   static_assert(hn::MaxLanes(D()) <= 16);

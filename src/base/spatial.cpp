@@ -3,8 +3,8 @@
 namespace buoyancy {
 
 Mat6 matrix_at(const Mat6& matrix, const Vec3& offset) {
-  // With x = [offset] the twist at the old point is that at the new one, (v + x w, w), and the torque about
-  // the new point is tau - x F. Block by block, since products of 6 x 6 matrices are expensive to compile.
+  // With the matrix x and the twist (v, w) at the new point, the twist at the old point is (v + x w, w), and
+  // the torque about the new point is tau - x F. Products of 6 x 6 matrices would take long to compile.
   const Mat3 x = cross_matrix(offset);
   const Mat3 force_v = matrix.topLeftCorner<3, 3>();
   const Mat3 torque_v = matrix.bottomLeftCorner<3, 3>();
@@ -40,7 +40,7 @@ Mat6 coriolis_matrix(const Mat6& mass, const Vec6& twist) {
 }
 
 Mat6 coriolis_derivative(const Mat6& mass, const Vec6& twist) {
-  // The twist varies beside a fixed momentum, and the momentum beside a fixed twist.
+  // By the product rule, the twist varies at fixed momentum, and the momentum at fixed twist.
   const Mat3 v = cross_matrix(twist.head<3>());
   const Mat3 w = cross_matrix(twist.tail<3>());
   Mat6 derivative = coriolis_matrix(mass, twist);

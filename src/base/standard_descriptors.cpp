@@ -7,7 +7,7 @@ namespace buoyancy {
 
 void open_standard_descriptors() {
   int opened = -1;
-  do {  // the kernel gives the lowest number that is free
+  do {  // the kernel returns the lowest free number
     opened = ::open("/dev/null", O_RDWR);
     if (opened < 0)
       opened = ::open("/", O_PATH);  // no /dev, as in some chroots: neither readable nor writable

@@ -3,9 +3,9 @@
 
 namespace buoyancy {
 
-// Opens /dev/null as each of the descriptors 0 to 2 that is closed: the next file that a program opens would
-// get its number, and what the program prints would be written into that file. Call it before the program
-// opens anything.
+// Opens /dev/null as each of the descriptors 0 to 2 that is closed. Otherwise the next file that the program
+// opens would get that number, and what the program prints would be written into it. Call this function
+// before the program opens anything.
 void open_standard_descriptors();
 
 }  // namespace buoyancy

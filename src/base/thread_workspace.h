@@ -5,8 +5,8 @@
 
 namespace buoyancy {
 
-// The calling thread's T, made by its first call. On the heap: a thread_local T of a shared library would be
-// part of every thread's stack in a program that links the library, also of threads that never call it.
+// Returns the calling thread's T, made by its first call. It is on the heap: a thread_local T of a shared
+// library would be part of the stack of every thread in a program, also of those that never call the library.
 template <typename T>
 T& thread_workspace() {
   thread_local std::unique_ptr<T> workspace;

@@ -1,4 +1,4 @@
-// The water that bodies float in, at rest, and gravity.
+// Describes gravity and the water at rest that bodies float in.
 #pragma once
 
 #include "base/vec3.h"
