@@ -26,7 +26,7 @@ bool is_request_or_pose(Bytes data) {
   return peek_request_id(data).has_value() || decode_bot_pose(data).has_value();
 }
 
-// A message that lost bytes can still have its full length if the next event's beginning follows.
+// Returns whether the data holds an event header: a message that lost bytes is filled up with the next event.
 bool is_truncated(Bytes data) {
   return std::search(data.begin(), data.end(), kMagic.begin(), kMagic.end()) != data.end();
 }

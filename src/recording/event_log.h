@@ -5,18 +5,18 @@
 // liblcm's own reader is not used: it loses the intact event before a corrupt section, allocates and skips as
 // many bytes as a corrupt length states, and does not distinguish corruption from the end of the file.
 // Contract of this reader: an event is valid if the header of another event or the end of the file follows
-// it, or if it is a valid request or pose; anything else is skipped up to the next such event and reported.
+// it. So is an event of a wanted channel that holds a complete request or pose and no event header. The
+// reader skips anything else up to the next header and reports it.
 //
-// Cuts (log_item.h). The reader's only state is its offset, so that reading a log follows a chain of offsets
-// from 0 to its size, each of which depends on the one before and on the file alone. The cut for an offset is
-// the first link of that chain at or after it; next() stops there. seek() does not read the chain from its
-// start: it follows another one, from the first header in the kSeekDistance bytes before the offset. Two
-// chains with one offset in common are the same from there on. If the data of the events there holds no
-// header, that first header is a link of the log's own chain. If it does (a log inside a message), the chain
-// through that data ends with it, as a rule at the next event. The two can stay apart only around an event
-// longer than kSeekDistance, around damage that looks like one, or in a log made for that purpose. A piece is
-// therefore known to be right if it starts where the piece before it ended, or at 0; otherwise it must be
-// read again from there, with seek_to().
+// The reader's only state is its offset, and the next offset depends on this one and the file alone. Reading
+// a log thus follows a chain of offsets from 0 to the log's size. The cut (log_item.h) for an offset is the
+// first offset of this chain at or after it, where next() stops. To be fast, seek() follows another chain,
+// from the first event header in the kSeekDistance bytes before its argument. Two chains that share one
+// offset are the same from there on. That header belongs to the log's own chain unless it lies in the data of
+// an event (a log inside a message); even then its chain as a rule joins the log's at the next event. The two
+// can stay apart only around an event longer than kSeekDistance, around damage that looks like such an event,
+// or in a log made for that purpose. A piece is therefore known to be right only if it starts at 0 or where
+// the piece before it ended; otherwise it must be read again from there, with seek_to().
 #pragma once
 
 #include <cstdint>
@@ -34,11 +34,11 @@
 
 namespace buoyancy {
 
-// Returns whether the events of a channel are wanted. Called for every event of a log.
+// Returns whether the events of a channel are wanted. The reader calls it for every event of a log.
 using ChannelFilter = std::function<bool(std::string_view channel)>;
 ChannelFilter only_channel(std::string channel);
 
-// Longer than an event that LCM's UDP multicast can deliver: its receivers assemble at most 16 MB [bytes].
+// [bytes], longer than any event that LCM's UDP multicast delivers: its receivers assemble at most 16 MB.
 inline constexpr std::int64_t kSeekDistance = 17'000'000;
 
 class EventLogReader {
@@ -88,14 +88,14 @@ void encode_event(std::int64_t number, std::int64_t timestamp, std::string_view 
 // Changes the number of an encoded event.
 void renumber_event(std::int64_t number, std::span<std::uint8_t> event);
 
-// Where an encoded event holds what: offsets from its start [bytes].
+// The parts of an encoded event begin or end at these offsets from its start [bytes].
 struct EventLayout {
   std::size_t channel = 0;
   std::size_t data = 0;
   std::size_t end = 0;
 };
-inline constexpr std::size_t kEventHeaderSize = 28;  // [bytes], all before the channel
-// Reads the lengths in the header that bytes begin with. nullopt: there is none, or it is not a whole one.
+inline constexpr std::size_t kEventHeaderSize = 28;  // [bytes], of all that precedes the channel
+// Reads the lengths in the event header at the start of bytes; nullopt if no complete and valid one is there.
 std::optional<EventLayout> event_layout(Bytes bytes);
 
 }  // namespace buoyancy

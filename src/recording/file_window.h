@@ -23,14 +23,14 @@ class FileWindow {
   // the process has too many open files.
   Expected<FileWindow> duplicate(std::size_t read_ahead = kReadAhead) const;
 
-  // Ends reading once stop() is true, which is asked before each read from the disk.
+  // Ends reading once stop() returns true. It is called before each read from the disk.
   void stop_when(std::function<bool()> stop) { stop_ = std::move(stop); }
 
-  // Returns the bytes from offset on: at least `count`, or all that are left of the file; fewer or none if
-  // they cannot be read, and none from then on. Valid until the next call. Memory: the largest count
-  // requested, or 1 MB.
+  // Returns the bytes from offset on, valid until the next call: at least `count`, or all that are left of
+  // the file; fewer or none if they cannot be read, and none from then on. The window takes as much memory as
+  // the largest count requested, and at least the read-ahead (1 MB unless duplicate() sets it).
   Bytes read_at(std::int64_t offset, std::size_t count);
-  // Returns the bytes from offset on as far as the last read_at() has left them in memory; perhaps none.
+  // Returns the bytes from offset on that the last read_at() left in memory, perhaps none.
   Bytes buffered(std::int64_t offset) const;
 
   // The file's size when it was opened; bytes appended later are not read.

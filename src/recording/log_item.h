@@ -5,8 +5,8 @@
 //   bool reached(limit)     whether that is so;
 //   void seek(offset)       moves to the cut for `offset`;
 //   position()              where the next item starts.
-// Each reader defines its cuts (event_log.h, state_csv.h) by the same rule for both sides: a piece that is
-// read up to the cut for an offset, and a piece that is read from there on, hold the items of the whole.
+// Each reader defines its cuts (event_log.h, state_csv.h) such that a piece that is read up to the cut for an
+// offset and a piece that is read from there on together hold the items of the whole recording.
 #pragma once
 
 #include <cstdint>

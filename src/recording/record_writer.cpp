@@ -99,8 +99,8 @@ Expected<void> RecordWriter::flush() {
   return {};
 }
 
-// A write of up to PIPE_BUF bytes to a pipe is atomic: as many complete records as fit are written at once,
-// and of a larger record as much as there is room for.
+// A write of up to PIPE_BUF bytes to a pipe is atomic, so that as many complete records as fit into it are
+// written at once. A larger record is written alone, as far as there is room for it.
 std::size_t RecordWriter::end_of_write(std::size_t begin) const {
   if (!is_pipe_) return buffer_.size();
   const auto too_far = std::upper_bound(record_ends_.begin(), record_ends_.end(), begin + PIPE_BUF);
@@ -114,7 +114,7 @@ bool RecordWriter::wait_until_writable() {
     std::array<pollfd, 2> waiting{pollfd{file_.value(), POLLOUT, 0}, pollfd{signal_, POLLIN, 0}};
     int timeout_ms = -1;
     if (deadline_) {
-      waiting[1].fd = -1;  // already observed: it stays readable
+      waiting[1].fd = -1;  // already observed; it would stay readable
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(*deadline_ - Clock::now());
       timeout_ms = static_cast<int>(std::max<std::int64_t>(left.count(), 0));
     }

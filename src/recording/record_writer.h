@@ -18,7 +18,7 @@ namespace buoyancy {
 
 class RecordWriter {
  public:
-  // How long a pipe's reader may stall after the signal of give_up_after().
+  // The time that a pipe's reader may stall after the signal of give_up_after().
   static constexpr std::chrono::seconds kGrace{1};
 
   // Creates or truncates the file. Blocks until a named pipe has a reader. Errors: the file cannot be
@@ -31,8 +31,8 @@ class RecordWriter {
   // pipe or terminal fails after kGrace, counted from the first such write.
   void give_up_after(int signal) { signal_ = signal; }
 
-  // Buffered: an error may concern an earlier record. After an error the writer must not be used further.
-  // Errors: disk full, the file or its reader is gone, a stalled reader (see give_up_after()).
+  // Records are buffered, so that an error may concern an earlier one. After an error the writer must not be
+  // used further. Errors: disk full, the file or its reader is gone, a stalled reader (see give_up_after()).
   Expected<void> append(Bytes record);
   Expected<void> append(std::string_view record);
 

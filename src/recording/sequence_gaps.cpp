@@ -16,7 +16,7 @@ std::int64_t saturated_sum(std::int64_t a, std::int64_t b) {
   return __builtin_add_overflow(a, b, &sum) ? std::numeric_limits<std::int64_t>::max() : sum;
 }
 
-// The number of integers from first to last.
+// Returns the number of integers from first to last.
 std::int64_t length(std::int64_t first, std::int64_t last) {
   std::int64_t difference = 0;
   if (__builtin_sub_overflow(last, first, &difference)) return std::numeric_limits<std::int64_t>::max();

@@ -23,7 +23,7 @@ bool is_own_regular_file(int file) {
   return ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink <= 1;
 }
 
-// Does the name still belong to this open file? Another process may have renamed it meanwhile.
+// Returns whether the name still belongs to this open file: another process may have renamed it meanwhile.
 bool is_name_of(const std::filesystem::path& path, int file) {
   struct stat named {};
   struct stat opened {};

@@ -15,10 +15,10 @@ namespace buoyancy {
 
 class StagedFile {
  public:
-  // Creates the temporary file, or takes over a regular one of no other name that no process writes any more:
-  // it is locked while it is written. On a file system without locks two processes may write the same file at
-  // the same time; whoever reads it must then detect that. Errors: not writable, path is no regular file, its
-  // temporary name is a symbolic or hard link, another process writes it.
+  // Creates the temporary file, or takes over a regular one with no other name that no process writes: the
+  // file is locked while it is written. On a file system without locks two processes may write the same file
+  // at the same time; whoever reads it must then detect that. Errors: not writable, path is no regular file,
+  // its temporary name is a symbolic or hard link, another process writes it.
   static Expected<StagedFile> create(const std::filesystem::path& path);
   StagedFile(StagedFile&&) noexcept = default;
   StagedFile& operator=(StagedFile&&) = delete;
@@ -26,7 +26,7 @@ class StagedFile {
 
   static std::filesystem::path temporary_name(std::filesystem::path path) { return path += ".tmp"; }
   const std::filesystem::path& temporary() const { return temporary_; }
-  // Another descriptor of the temporary file; not valid if this process has too many.
+  // Returns another descriptor of the temporary file; not valid if this process has too many.
   UniqueFd duplicate() const { return UniqueFd(::fcntl(file_.value(), F_DUPFD_CLOEXEC, 0)); }
 
   // Gives the file its name. Errors: the disk failed.

@@ -93,7 +93,7 @@ LogItem StateCsvReader::next(std::int64_t limit) {
     }
     append(*row);
   }
-  if (file_.broken_off()) return EndOfLog{};  // the line, or the run of rows, may be cut off
+  if (file_.broken_off()) return EndOfLog{};  // the line or the run of rows may be incomplete
   if (!request_.bodies.empty()) {
     encode(request_, bytes_);
     ++request_.id.seq;
@@ -105,7 +105,7 @@ LogItem StateCsvReader::next(std::int64_t limit) {
 
 void StateCsvReader::seek(std::int64_t offset) {
   if (offset > offset_) {
-    offset_ = offset - 1;  // a line starts at the offset if its last newline is there
+    offset_ = offset - 1;  // a line starts at `offset` if the byte before is a newline
     skip_to_newline();
   }
   counted_from_ = offset_;

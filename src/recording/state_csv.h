@@ -7,11 +7,11 @@
 // Consecutive rows with equal utime, up to kMaxRowsPerRequest, form one request with session kCsvSession,
 // lead_time 0 and seq counted from 0.
 //
-// Cuts (log_item.h). A run is a sequence of rows with equal utime, with nothing but blank lines between them.
-// The cut for an offset is the first line at or after it that is malformed, or that starts a run after a row
-// at or after the offset. A request never extends over a cut, whatever its limit of rows, and a cut depends
-// only on the header and on what follows the offset. The rows of a run that lies around the offset belong
-// to the piece in front. A piece numbers its requests from 0.
+// A run is a sequence of rows with equal utime, with nothing but blank lines between them. The cut
+// (log_item.h) for an offset is the first line at or after it that is malformed, or that starts a run and
+// follows a row at or after the offset. A request never extends over a cut, whatever kMaxRowsPerRequest is,
+// and a cut depends only on the header and on what follows the offset. The rows of a run that spans the
+// offset belong to the piece before the cut. Each piece numbers its requests from 0.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ class StateCsvReader {
   // Errors: not readable, an invalid header. An empty file has no rows and is valid.
   static Expected<StateCsvReader> open(const std::filesystem::path& path);
 
-  // Does the header name velocities? Also true for an empty file, which has no rows without them.
+  // Returns whether the header names velocities; also true for an empty file, which has no rows without them.
   bool states_velocities() const;
 
   // Once file().broken_off(), returns EndOfLog.
@@ -47,7 +47,7 @@ class StateCsvReader {
   const FileWindow& file() const { return file_; }
   FileWindow& file() { return file_; }
 
-  // Lines are counted from here on in the descriptions of malformed lines. O(rows of the run around offset).
+  // Malformed lines are then numbered from the first line at or after `offset`. O(rows of the run there).
   void seek(std::int64_t offset);
 
  private:
