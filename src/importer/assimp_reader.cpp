@@ -156,7 +156,7 @@ void keep_only(Assimp::Importer& importer, const std::string& extension) {
   }
 }
 
-// The transform of the root without the turn of assimp's 3DS importer, which takes x, y, z to x, z, -y.
+// Returns the root's transform without the rotation that assimp's 3DS importer adds: x, y, z to x, z, -y.
 Transform root_transform(const aiScene& scene, MeshFormat format) {
   Transform root = to_transform(scene.mRootNode->mTransformation);
   if (format != MeshFormat::k3ds) return root;
@@ -206,7 +206,7 @@ FaceCounts count_faces(const aiMesh& mesh) {
   return counts;
 }
 
-// Appends the faces as triangles, if all of the scene are triangles, or as polygons.
+// Appends the faces as triangles if all faces of the scene are triangles, else as polygons.
 void append_instance(const aiMesh& part, const Transform& x_BN, bool as_triangles, StoredMesh& stored) {
   TriangleMesh& mesh = stored.mesh;
   const auto first = static_cast<std::int32_t>(mesh.vertex_count());
@@ -357,7 +357,7 @@ void describe(const aiScene& scene, const ImportRequest& request, const OpenFile
   }
 }
 
-// Whether assimp's message means that there is no mesh, rather than that the file is unreadable.
+// Returns whether assimp's message means that there is no mesh, rather than that the file is unreadable.
 bool reports_empty_file(const std::string& message) {
   constexpr std::array kEmptyFilePhrases{"too small",         "contains no vertices", "There are no facets",
                                          "no valid vertices", "came out empty",       "mNumMeshes is 0",
@@ -382,8 +382,8 @@ Expected<StoredMesh> read_with_assimp(const ImportRequest& request, const OpenFi
   importer.SetIOHandler(new OpenedFiles(open));  // the importer owns it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   keep_only(importer, lowercase_extension(request.name).substr(1));
-  // assimp's steps edit geometry: they delete small triangles, move vertices, and drop triangles of polygons
-  // with collinear corners. This one does not.
+  // assimp's post-processing steps edit geometry: they delete small triangles, move vertices, and drop
+  // triangles of polygons with collinear corners. Validation does not.
   const aiScene* scene = importer.ReadFile(request.name, aiProcess_ValidateDataStructure);
   if (scene == nullptr) {
     if (const std::exception_ptr& exception = importer.GetException()) {

@@ -1,6 +1,5 @@
-// buoyancy-import-mesh: reads one mesh file for the program that has started it, which
-// geometry/import_process.h describes. It does so in a cage, since files exist that crash importers or make
-// them do what the file says.
+// buoyancy-import-mesh reads one mesh file for the program that started it (geometry/import_process.h). It
+// does so in a sandbox (cage.h), since files exist that crash importers or make them do what the file says.
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -18,7 +17,7 @@
 namespace buoyancy {
 namespace {
 
-// The kernel sends no signal for a parent that had died before it was asked to.
+// The kernel sends no signal for a parent that died before PR_SET_PDEATHSIG; its socket is closed then.
 bool parent_is_gone() {
   char byte = 0;
   return ::recv(kImporterSocket, &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0;

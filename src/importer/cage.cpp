@@ -72,22 +72,22 @@ void drop_root() {
   constexpr unsigned kNobody = 65534;
   ::setgroups(0, nullptr);
   if (::setresgid(kNobody, kNobody, kNobody) != 0) return;
-  // In a user namespace without this id the process stays what is root there.
+  // In a user namespace that does not map this id, the process stays root of that namespace.
   [[maybe_unused]] const int not_mapped = ::setresuid(kNobody, kNobody, kNobody);
 }
 
-// What landlock_create_ruleset() takes; Debian 12's headers have the first member only.
+// The argument of landlock_create_ruleset(), of which Debian 12's headers have the first member only.
 struct LandlockRules {
   std::uint64_t files;
   std::uint64_t tcp;    // from version 4 on: bind, connect
   std::uint64_t scope;  // from version 6 on: connections to sockets without a name in a folder, signals
 };
 
-// Takes every right that the kernel knows and permits none.
+// Takes away every right that Landlock in this kernel can restrict.
 void close_file_systems() {
   const auto version = ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
   if (version < 1) return;
-  constexpr std::array<unsigned, 5> kFileRights{13, 14, 15, 15, 16};  // by version: as many lower bits
+  constexpr std::array<unsigned, 5> kFileRights{13, 14, 15, 15, 16};  // the lowest bits, by version
   const auto known = std::min<std::size_t>(static_cast<std::size_t>(version), kFileRights.size());
   const LandlockRules rules{(std::uint64_t{1} << kFileRights[known - 1]) - 1, 3, 3};
   const std::size_t size = version >= 6   ? sizeof(rules)
@@ -109,7 +109,7 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_RISCV64;
 constexpr std::uint32_t kArchitecture = 0;  // no filter
 #endif
 
-// Memory, the descriptors that it has, and its own end. Everything else fails with EPERM.
+// These calls serve memory, open descriptors and the end of the process. All others fail with EPERM.
 constexpr std::array kAllowedCalls{
     SYS_read,           SYS_pread64,      SYS_readv,       SYS_write,   SYS_writev,     SYS_lseek,
     SYS_close,          SYS_recvfrom,     SYS_recvmsg,     SYS_sendto,  SYS_brk,        SYS_mmap,

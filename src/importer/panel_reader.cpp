@@ -34,8 +34,8 @@ std::string read_all(const UniqueFd& file) {
   return text;
 }
 
-// Numbers as Fortran's list-directed READ takes them: separated by blanks, commas or line ends, exponents
-// with E or D.
+// Reads numbers as Fortran's list-directed READ does: separated by blanks, commas or line ends, with
+// exponents in E or D.
 class Numbers {
  public:
   explicit Numbers(std::string text) : text_(std::move(text)) {}
@@ -45,7 +45,7 @@ class Numbers {
     at_ = end == std::string::npos ? text_.size() : end + 1;
   }
 
-  // Whether another number is next on this line, and not a note such as "(bow)".
+  // Returns whether the rest of this line begins with a number, and not with a note such as "(bow)".
   bool has_number_on_line() {
     const std::size_t start = at_;
     const std::size_t line_end = std::min(text_.find('\n', at_), text_.size());
@@ -69,7 +69,7 @@ class Numbers {
     return value;
   }
 
-  // A whole number from 0 to `max`.
+  // Returns the next number if it is a whole one from 0 to `max`.
   std::optional<std::int64_t> next_count(std::int64_t max) {
     const std::optional<double> value = next();
     if (!value || !(*value >= 0.0 && *value <= static_cast<double>(max)) || *value != std::floor(*value)) {

@@ -1,4 +1,4 @@
-// Errors that the readers of all formats share. The caller sets Error::subject.
+// Creates the errors that the readers of all formats share. The caller sets Error::subject.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace buoyancy {
 
-// triangles: after splitting polygons, at least.
+// Returns an error if the mesh exceeds the limits. triangles: a lower bound, after splitting polygons.
 std::optional<Error> check_limits(std::uint64_t vertices, std::uint64_t triangles,
                                   const ImportLimits& limits);
 
-// message: what the reader says; may be empty.
+// message: the text of the format's reader; may be empty.
 Error unreadable(MeshFormat format, const std::string& message);
 
 Error no_triangles(std::int64_t points_and_lines);
