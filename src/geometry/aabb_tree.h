@@ -23,8 +23,8 @@ class AabbTree {
     if (!nodes_.empty()) descend(0, meets, visit);
   }
 
-  // Calls visit(i, j) once for every pair of boxes that share a point, until it returns false. Returns
-  // whether it never did. Complexity: O(n log n) plus the pairs, of which there are n^2 / 2 if all boxes
+  // Calls visit(i, j) once for every pair of boxes that share a point, until visit returns false. Returns
+  // false in that case. Complexity: O(n log n) plus the pairs, of which there are n^2 / 2 if all boxes
   // overlap.
   template <typename Visit>
   bool for_each_overlapping_pair(Visit&& visit) const {
@@ -111,7 +111,7 @@ class AabbTree {
 
 BoundingBox box_of_face(const TriangleMesh& mesh, const Triangle& face);
 
-// Those of `faces`, in their order.
+// Returns the bounding boxes of `faces`, in their order.
 std::vector<BoundingBox> boxes_of_faces(const TriangleMesh& mesh, const std::vector<Triangle>& faces);
 
 }  // namespace buoyancy

@@ -1,4 +1,4 @@
-// The edges that a mesh lacks, as closed loops: where caps belong.
+// Finds the edges that a mesh lacks, as closed loops over which caps belong.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ using Loop = std::vector<std::int32_t>;  // vertices in the direction of the cap
 // uses; ascending. O(n).
 std::vector<Edge> missing_edges(const TriangleMesh& mesh);
 
-// Divides directed edges into closed loops that use no vertex twice. A walk that ends without returning to
-// its start counts as a loop with one edge more: there is none in a net chain. edges: ascending. O(n log n).
+// Divides directed edges into closed loops that use no vertex twice. A walk that ends away from its start
+// counts as a loop with one more edge; a net chain has no such walk. edges: ascending. O(n log n).
 std::vector<Loop> find_loops(const std::vector<Edge>& edges);
 
-// Turns edges so that they follow each other along trails, as long as these go; ascending. Where faces around
-// a hole have no consistent winding, its edges do not follow each other.
+// Directs edges along trails, each continued as far as it goes, and returns them ascending. Where faces
+// around a hole have no consistent winding, its edges do not follow each other.
 std::vector<Edge> directed_along_trails(const std::vector<Edge>& edges);
 
 }  // namespace buoyancy

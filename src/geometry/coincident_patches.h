@@ -6,11 +6,11 @@
 
 namespace buoyancy {
 
-// Patches are faces connected through edges of exactly two faces. Of flat patches with the same rim all get
-// the triangles of the first, turned where their rim runs the other way round. Only patches whose whole rim
-// consists of edges of three faces or more count, as those of a polygon that is stored twice do. Flat: within
-// the tolerance [m] of a plane. Returns a bound on the volume that this changes [m^3]. Complexity: O(n log
-// n).
+// Patches are faces connected through edges of exactly two faces. All flat patches with the same rim get the
+// triangles of the first one, reversed where their rim runs the other way round. Only patches whose rim edges
+// all have three faces or more take part, as those of a polygon that is stored twice. A patch is flat if it
+// lies within the tolerance [m] of a plane. Returns a bound on the volume that this changes [m^3].
+// Complexity: O(n log n).
 double unify_coincident_patches(TriangleMesh& mesh, double tolerance);
 
 }  // namespace buoyancy

@@ -29,15 +29,15 @@ BoundingBox common_box(const BoundingBox& a, const BoundingBox& b) {
   return {a.min_B.cwiseMax(b.min_B), a.max_B.cwiseMin(b.max_B)};
 }
 
-// A surface crosses the axis of a column.
+// The point at which a surface crosses the axis of a column.
 struct Crossing {
   std::uint32_t column = 0;
   double height = 0.0;                // [m], along the axis
-  std::int8_t first = 0, second = 0;  // by which the winding number of either mesh changes there
+  std::int8_t first = 0, second = 0;  // change of either mesh's winding number there
 };
 
-// The places across the columns, in one direction: `count` of equal width, divided at the vertices of the
-// meshes where these have few different coordinates, so that faces along the axes lie between columns.
+// Returns the sides of the columns in one direction: `count` of equal width, divided at the meshes' vertices
+// if these have at most `count` different coordinates, so that faces along the axes lie between columns.
 std::vector<double> places_between(double low, double high, int count, std::span<const OffsetMesh> meshes,
                                    Eigen::Index axis) {
   std::vector<double> places;
@@ -57,7 +57,7 @@ std::vector<double> places_between(double low, double high, int count, std::span
   return places;
 }
 
-// Columns over a box.
+// The columns over a box, and where surfaces cross their axes.
 class Columns {
  public:
   Columns(const BoundingBox& box, std::span<const OffsetMesh> meshes, const ColumnLayout& layout)
@@ -92,13 +92,13 @@ class Columns {
   }
 
   std::vector<Crossing>& crossings() { return crossings_; }
-  double rounding() const { return rounding_; }  // [m^3], what that of all crossings may add up to
+  double rounding() const { return rounding_; }  // [m^3], bound for all crossings together
 
  private:
   using Point2 = Eigen::Vector2d;
 
   Point2 across(const Vec3& point) const { return {point[across_[0]], point[across_[1]]}; }
-  // The columns whose axes lie between two coordinates: from the first to before the second.
+  // Returns the columns whose axes lie between two coordinates: the first one, and the one after the last.
   std::array<std::size_t, 2> range(std::size_t direction, double low, double high) const {
     const std::vector<double>& axes = axes_[direction];
     const auto first = std::lower_bound(axes.begin(), axes.end(), low);
@@ -106,8 +106,8 @@ class Columns {
     return {static_cast<std::size_t>(first - axes.begin()), static_cast<std::size_t>(last - axes.begin())};
   }
 
-  // Is the point on the left of the directed edge? The same edge the other way gives the opposite, so that a
-  // closed surface has no gaps.
+  // Returns whether the point is on the left of the directed edge. The reversed edge gives the opposite, so
+  // that a closed surface has no gaps.
   static bool is_left(const Point2& from, const Point2& to, const Point2& point) {
     const bool is_swapped = to.x() < from.x() || (to.x() == from.x() && to.y() < from.y());
     const Point2& a = is_swapped ? to : from;
@@ -132,7 +132,7 @@ class Columns {
         const Point2 point(axes_[0][column], axes_[1][row]);
         const bool left = is_left(a, b, point);
         if (is_left(b, c, point) != left || is_left(c, a, point) != left) continue;
-        // From below, the surface leads in where its normal points down, which is where it turns clockwise.
+        // Upward, the axis enters the solid where the normal points down: the triangle is clockwise there.
         const auto change = static_cast<std::int8_t>(left ? -1 : 1);
         const auto index = static_cast<std::uint32_t>(row * axes_[0].size() + column);
         crossings_.push_back({index,
@@ -143,8 +143,8 @@ class Columns {
     }
   }
 
-  // [m], bound on the error of height_at(): that of the weights, which are products of differences of
-  // coordinates, times the differences of height, and that of the result.
+  // Returns a bound on the error of height_at() [m]: the error of the weights, which are products of
+  // differences of coordinates, times the differences of height, plus the rounding of the result.
   double rounding_of_heights(const std::array<Vec3, 3>& corners, const std::array<Point2, 3>& at,
                              double twice_area) const {
     double size = 0.0;
@@ -186,7 +186,7 @@ class Columns {
   std::vector<Crossing> crossings_;
 };
 
-// The volume of the box, as often as `counts` says for the winding numbers of the two meshes.
+// Integrates counts(winding number of the first mesh, that of the second) over the box [m^3].
 template <typename Counts>
 ColumnSum volume_where(const BoundingBox& box, const OffsetMesh& first, const OffsetMesh& second,
                        const ColumnLayout& layout, const Counts& counts) {
@@ -243,7 +243,7 @@ std::optional<double> overlap_volume(const TriangleMesh& mesh) {
   const TriangleMesh none;
   const OffsetMesh only{&mesh, Vec3::Zero()};
   const BoundingBox box = box_of(only);
-  constexpr double kMaxLayers = 1'000.0;  // of the surface over the columns, on average
+  constexpr double kMaxLayers = 1'000.0;  // the surface's crossings per column, on average
   const Vec3 sides = box.max_B - box.min_B;
   const double section = sides.prod() / sides.maxCoeff();
   double area = 0.0;

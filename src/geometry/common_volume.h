@@ -1,5 +1,5 @@
-// The volume that two closed meshes share, and the volume of one outside the other: for checks of how meshes
-// are arranged, not for loads.
+// Computes the volume that two closed meshes share, and the volume of one outside the other: for checks of
+// how meshes are arranged, not for loads.
 //
 // The meshes are cut into columns along their longest common direction. On the axis of a column the crossings
 // of each surface, with their directions, say where it is inside (winding number above 0), so that nested,
@@ -21,24 +21,24 @@ struct OffsetMesh {
   Vec3 offset_B = Vec3::Zero();
 };
 
-// [m^3], inside both. Complexity: O(triangles + 256^2 columns and their crossings), some 20 ms; O(vertices)
-// for meshes whose bounding boxes have nothing in common.
+// Returns the volume inside both [m^3]. Complexity: O(triangles + 256^2 columns and their crossings), some 20
+// ms; O(vertices) for meshes whose bounding boxes have nothing in common.
 double common_volume(const OffsetMesh& a, const OffsetMesh& b);
 
-// [m^3], inside `inner` and outside `outer`. Complexity: as common_volume().
+// Returns the volume inside `inner` and outside `outer` [m^3]. Complexity: as common_volume().
 double volume_outside(const OffsetMesh& inner, const OffsetMesh& outer);
 
-// [m^3], what the volume integrals of a closed mesh count more often than once, because its parts overlap or
-// lie in each other; nullopt if the surface would cover its box more than a thousand times. Complexity: as
-// common_volume(), times the layers of the surface.
+// Returns the volume [m^3] that the integrals over a closed mesh count more than once, because its parts
+// overlap or lie in each other; nullopt if the surface would cover its box more than a thousand times.
+// Complexity: as common_volume(), times the layers of the surface.
 std::optional<double> overlap_volume(const TriangleMesh& mesh);
 
 // How a box is cut into columns.
 struct ColumnLayout {
   Eigen::Index along = 2;  // the axis of B that the columns are along
   int count = 256;         // per direction, at least 1
-  // Where the axis of a column is, as shares of its widths. By default just off its middle, so that it meets
-  // no edge of a mesh with round coordinates.
+  // Position of a column's axis as shares of its widths. The default is just off the middle, so that the axis
+  // meets no edge of a mesh with round coordinates.
   std::array<double, 2> axis_at{0.4939, 0.5047};
 };
 
@@ -47,8 +47,8 @@ struct ColumnSum {
   double rounding = 0.0;  // [m^3], bound on the rounding error of the sum
 };
 
-// Inside one of the two and outside the other, in the box. Complexity: as common_volume(), in proportion to
-// the number of columns.
+// Returns the volume in the box that is inside one mesh and outside the other. Complexity: as
+// common_volume(), in proportion to the number of columns.
 ColumnSum volume_inside_one(const OffsetMesh& a, const OffsetMesh& b, const BoundingBox& box,
                             const ColumnLayout& layout);
 

@@ -82,7 +82,7 @@ ComponentLists sample_vertices(const TriangleMesh& mesh, const MeshTopology& top
   return samples;
 }
 
-// Returns, by component, the surfaces of those that are candidates.
+// Returns the surfaces of the candidates, by component.
 std::vector<std::optional<WindingNumber>> candidate_surfaces(const TriangleMesh& mesh,
                                                              const MeshTopology& topology,
                                                              const std::vector<bool>& is_candidate) {

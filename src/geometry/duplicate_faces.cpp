@@ -91,7 +91,7 @@ void add_copies(const std::vector<std::int32_t>& faces, std::vector<std::int32_t
   if (faces.size() > 1) copies.insert(copies.end(), faces.begin() + 1, faces.end());
 }
 
-// Forward less backward uses of an edge by one face.
+// Returns 1 if the face uses the edge forward, -1 if backward.
 int direction_of(const EdgeTable& table, std::int32_t edge, const Triangle& face) {
   const Edge& ends = table.edge(edge);
   for (std::size_t side = 0; side < 3; ++side) {
@@ -120,7 +120,7 @@ void remove_copies(TriangleMesh& mesh, RepairReport& report) {
       patches.unite(copy_at_edge[edge], static_cast<std::int32_t>(i));
     }
   }
-  // A patch of copies is needed if its rim is matched with it.
+  // A patch of copies is needed if the edges at its rim are matched while it is there.
   std::vector<bool> has_rim(copies.size(), false);
   std::vector<bool> has_unmatched_rim(copies.size(), false);
   for (std::size_t edge = 0; edge < table.size(); ++edge) {
@@ -137,8 +137,8 @@ void remove_copies(TriangleMesh& mesh, RepairReport& report) {
   remove_faces(mesh, removed, RepairKind::kRemoveDuplicates, report);
 }
 
-// Of faces with both copies and opposites, removes opposites in pairs, which changes no edge's net uses,
-// until no copies or one pair is left.
+// Where faces have both copies and opposites, removes opposites in pairs until one kind or one pair is left.
+// This changes no edge's net uses.
 void cancel_mixed_copies(TriangleMesh& mesh, RepairReport& report) {
   std::vector<bool> removed(mesh.triangles.size(), false);
   for (const FaceGroup& group : group_faces(mesh)) {

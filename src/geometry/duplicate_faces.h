@@ -8,12 +8,12 @@ namespace buoyancy {
 
 // Faces with the same three vertices are copies of the same winding, or opposites.
 //
-// Copies are removed, patch by patch (connected through edges), unless all edges at the patch's rim are
-// matched with it: a part that is stored twice becomes one, and of a box that stands flush inside another
-// nothing is removed.
+// Copies are removed, patch by patch (connected through edges), unless the edges at the patch's rim are
+// matched only together with it: a part that is stored twice becomes one, and a box that stands flush inside
+// another keeps all its faces.
 //
-// Of opposites one stays, the earlier: the surface is stored for both sides. Which of them are walls between
-// solids, or fins, so that none is needed, is a matter of geometry (inner_faces.h, flat_sheets.h).
+// Of two opposites the earlier one stays: the surface is stored for both sides. Later steps remove it too if
+// it is a wall between solids or a fin, which depends on geometry (inner_faces.h, flat_sheets.h).
 //
 // Flat polygons (within the tolerance) that are stored twice count as duplicates also if they are divided
 // into other triangles. tolerance: [m]. mesh: welded. Complexity: O(n log n).

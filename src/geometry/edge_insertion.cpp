@@ -39,9 +39,8 @@ void add_piece(std::int32_t a, std::int32_t b, std::int32_t c, std::vector<Trian
   if (a != b && b != c && c != a) pieces.push_back({a, b, c});
 }
 
-// Triangulates a face of three different corners whose sides have different further vertices. From the first
-// corner, strips between its two sides; the last of these triangles has the third side, over which it is cut
-// into a fan.
+// Triangulates a face of three different corners whose sides have different further vertices. It cuts strips
+// between the two sides at the first corner. The last triangle, which has the third side, becomes a fan.
 void triangulate_strips(const Triangle& corners, const std::array<std::vector<SidePoint>, 3>& sides,
                         std::vector<Triangle>& pieces) {
   std::vector<SidePoint> right = sides[0];  // from the first corner to the second
@@ -131,12 +130,12 @@ std::vector<Edge> unmatched_edges(const MeshTopology& topology) {
   return edges;
 }
 
-// An edge that finds a partner counts as an improvement, also if it then has three faces.
+// Counts boundary edges twice: one that gains a face is then an improvement even if it gets three faces.
 std::int64_t count_faults(const MeshTopology& topology) {
   return topology.counts.unmatched() + topology.counts.boundary;
 }
 
-// The vertices of some edges, for searches along lines.
+// Finds vertices of some edges along lines.
 class VertexTree {
  public:
   VertexTree(const TriangleMesh& mesh, const std::vector<Edge>& edges)
@@ -177,7 +176,7 @@ class VertexTree {
     for (const std::int32_t v : vertices) boxes.push_back({mesh.vertex(v), mesh.vertex(v)});
     return boxes;
   }
-  // Whether the segment meets the box after that is enlarged by the margin on all sides.
+  // Returns whether the segment meets the box enlarged by the margin on all sides.
   static bool segment_meets(const Vec3& from, const Vec3& along, const BoundingBox& box, double margin) {
     double enter = 0.0;
     double leave = 1.0;
@@ -200,8 +199,8 @@ class VertexTree {
   AabbTree tree_;
 };
 
-// Returns the vertices of unmatched edges that lie on any edges, in ascending order; nullopt if there are too
-// many.
+// Returns the insertions of unmatched edges' vertices into the edges on which they lie, ascending; nullopt if
+// there are too many.
 std::optional<std::vector<EdgeInsertion>> find_insertions(const TriangleMesh& mesh,
                                                           const std::vector<Edge>& unmatched,
                                                           double tolerance) {
@@ -230,7 +229,7 @@ std::size_t count_uses(const EdgeUses& edges, std::int32_t a, std::int32_t b) {
   return static_cast<std::size_t>(std::upper_bound(first, end, high, after) - first);
 }
 
-// Returns those insertions beside which an edge has gained a face.
+// Returns the insertions next to which an edge has gained a face.
 std::vector<EdgeInsertion> useful_insertions(const TriangleMesh& mesh, const TriangleMesh& split,
                                              const std::vector<EdgeInsertion>& insertions) {
   const EdgeUses before = collect_edge_uses(mesh);

@@ -15,7 +15,7 @@ namespace buoyancy {
 struct EdgeInsertion {
   Edge edge{};              // lower vertex first
   double along = 0.0;       // position on the edge, from 0 at the lower vertex to 1
-  std::int32_t vertex = 0;  // none of the edge's
+  std::int32_t vertex = 0;  // not an end of the edge
   double distance = 0.0;    // from the edge [m]
 
   bool operator<(const EdgeInsertion& other) const;  // by edge, position, vertex
@@ -29,12 +29,12 @@ struct SplitMesh {
 
 // Inserts the vertices and triangulates the faces anew, without folds: a face with vertices on its edges is
 // cut from one corner into strips between its two sides, then into a fan over the third. A face of which
-// nothing is left, as a needle whose three corners lie on one edge, vanishes. insertions: ascending.
+// nothing is left vanishes, such as a needle whose three corners lie on one edge. insertions: ascending.
 // Complexity: O(n log n).
 SplitMesh split_edges(const TriangleMesh& mesh, std::span<const EdgeInsertion> insertions);
 
-// Inserts vertices of unmatched edges into edges within the tolerance [m] of them. Insertions beside which no
-// edge gains a face are undone.
+// Inserts vertices of unmatched edges into edges within the tolerance [m] of them. An insertion is undone if
+// no edge next to it gains a face.
 void insert_vertices_on_edges(TriangleMesh& mesh, double tolerance, RepairReport& report);
 
 }  // namespace buoyancy

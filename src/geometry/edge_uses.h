@@ -1,4 +1,4 @@
-// Which faces use an edge of a mesh, and in which direction; the basis of topology and repair.
+// Finds which faces use an edge of a mesh, and in which direction. Topology and repair build on it.
 #pragma once
 
 #include <array>
@@ -46,11 +46,11 @@ struct EdgeUses {
   }
 };
 
-// mesh: indices in range, no face with two equal indices. Complexity: O(n) for n faces; O(n log n) if many
-// faces share one vertex.
+// Requires indices in range and no face with two equal indices. Complexity: O(n) for n faces; O(n log n) if
+// many faces share one vertex.
 EdgeUses collect_edge_uses(const TriangleMesh& mesh);
 
-// Edges numbered in the order of EdgeUses::for_each_edge(), with a way from a face to its edges.
+// Numbers the edges in the order of EdgeUses::for_each_edge(), and finds the edges of a face.
 class EdgeTable {
  public:
   explicit EdgeTable(const TriangleMesh& mesh);
@@ -61,7 +61,7 @@ class EdgeTable {
     const auto i = static_cast<std::size_t>(e);
     return std::span(uses_.uses).subspan(first_use_[i], first_use_[i + 1] - first_use_[i]);
   }
-  // The edges of a face, in no particular order.
+  // Returns the edges of a face, in no particular order.
   const std::array<std::int32_t, 3>& edges_of(std::int32_t face) const {
     return edges_of_face_[static_cast<std::size_t>(face)];
   }
@@ -73,7 +73,7 @@ class EdgeTable {
   std::vector<std::array<std::int32_t, 3>> edges_of_face_;
 };
 
-// Forward less backward uses; 0 if the edge is matched.
+// Returns forward minus backward uses: 0 if the edge is matched.
 inline std::int64_t net_uses(std::span<const EdgeUse> uses) {
   std::int64_t net = 0;
   for (const EdgeUse& use : uses) net += use.forward ? 1 : -1;

@@ -1,4 +1,4 @@
-// What a closed mesh encloses.
+// Finds the solid that a closed mesh encloses.
 #pragma once
 
 #include <optional>

@@ -39,7 +39,7 @@ class ParitySets {
     return {i, disagrees};
   }
 
-  // Returns false if that contradicts earlier unions.
+  // Returns false if this contradicts earlier unions.
   bool unite(std::int32_t i, std::int32_t j, bool disagree) {
     const Root a = find(i);
     const Root b = find(j);

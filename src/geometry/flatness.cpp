@@ -24,7 +24,7 @@ double distance_from_plane(const TriangleMesh& mesh, std::span<const std::int32_
     along = ab.squaredNorm() > ac.squaredNorm() ? ab : ac;
   }
   if (!(normal.squaredNorm() > 0.0)) return std::numeric_limits<double>::infinity();
-  // The normal of a needle is a difference of products and need not be perpendicular to it.
+  // The computed normal of a needle is a difference of products and need not be perpendicular to its sides.
   along.normalize();
   normal = (normal - normal.dot(along) * along).normalized();
   double distance = 0.0;

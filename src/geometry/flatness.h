@@ -1,4 +1,4 @@
-// How far faces are from a plane.
+// Measures how far faces are from a plane.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Caps over holes: how large a hole is, and faces that close it.
+// Measures holes and closes them with caps.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace buoyancy {
 
-// Holes are closed at load if their bulge, all together, is at most this share of the volume.
+// Holes are closed at load if their bulges together are at most this share of the volume.
 inline constexpr double kNegligibleBulge = 1e-5;
 
 struct HoleSize {
@@ -23,13 +23,13 @@ struct HoleSize {
 // work_left: see cap_negligible_holes().
 HoleSize measure_hole(const TriangleMesh& mesh, const Hole& hole, std::int64_t& work_left);
 
-// Whether some of the edges, whatever their directions, form a closed loop.
+// Returns whether some of the edges, whatever their directions, form a closed loop.
 bool has_closed_loop(const std::vector<Edge>& edges);
 
-// The work that measuring the holes of a mesh, or capping them, may take; each 10 ns or less.
+// Measuring or capping the holes of a mesh may take this number of steps, each of 10 ns or less.
 inline constexpr std::int64_t kCapWork = 200'000'000;
 
-// Closes all holes if they are negligible, kNegligibleBulge.
+// Closes all holes if they are negligible together (kNegligibleBulge).
 //
 // The caps' edges are the net chain of the unmatched edges: each edge as often, and in the direction, as it
 // lacks uses. That chain consists of closed loops, so that the mesh is closed or balanced afterwards whatever
@@ -38,9 +38,9 @@ inline constexpr std::int64_t kCapWork = 200'000'000;
 // Complexity: O(n log n).
 void cap_negligible_holes(TriangleMesh& mesh, RepairReport& report);
 
-// Closes those holes that consist of boundary edges alone and of which each bulge is at most kNegligibleBulge
-// of the bounding box's volume, whatever the winding of the faces around them. That they are negligible
-// together is left to check, when the volume is known.
+// Closes each hole that consists of boundary edges alone and whose bulge is at most kNegligibleBulge of the
+// bounding box's volume, whatever the winding of the faces around it. The caller must check that they are
+// negligible together once the volume is known.
 void cap_small_holes(TriangleMesh& mesh, RepairReport& report);
 
 }  // namespace buoyancy

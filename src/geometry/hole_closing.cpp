@@ -23,7 +23,7 @@ constexpr std::size_t kMaxForLeastArea = 1'000;       // edges
 constexpr double kMaxDoubtfulOverlap = 1e-2;          // of the volume
 constexpr std::int64_t kClosingWork = 1'000'000'000;  // of caps of least area, each some 5 ns
 
-// The area vector of a loop: it points out of a mesh whose normals do, where a cap fills a hole. [m^2]
+// Returns a loop's area vector [m^2]. Over a hole it points outward if the normals of the mesh do.
 Vec3 area_vector(const TriangleMesh& mesh, const Loop& loop) {
   const Vec3 origin = mesh.vertex(loop.front());
   Vec3 sum = Vec3::Zero();
@@ -61,7 +61,7 @@ Cap make_cap(const TriangleMesh& mesh, const Loop& loop, std::int64_t& work_left
     cap.faces = cap_loop(mesh, loop, kMaxForLeastArea, work_left);
     under_least = volume_under(mesh, cap.faces, mean);
   }
-  // Of a flat loop all caps have the least area, but only ears do without folds and needles.
+  // All caps of a flat loop have the least area, but only ear clipping avoids folds and needles.
   constexpr double kEqual = 1e-9;
   const double least = cap.faces.empty() ? cap.area : area_of(mesh, cap.faces);
   if (cap.area <= least * (1.0 + kEqual)) {
@@ -69,14 +69,14 @@ Cap make_cap(const TriangleMesh& mesh, const Loop& loop, std::int64_t& work_left
   } else {
     cap.area = least;
   }
-  // The fan around the mean encloses nothing with the mean itself.
+  // The volume under the fan around the mean is 0, since volumes are taken about the mean.
   const auto [low, high] = std::minmax({0.0, under_flat, under_least});
   constexpr double kRounding = 1e-12;
   if (high - low > kRounding * bulge_of(cap.area)) cap.disagreement = high - low;
   return cap;
 }
 
-// Adds a wall along a rim. Returns the loop at its top.
+// Adds a wall along a rim and returns the loop at its top.
 Loop raise_rim(TriangleMesh& mesh, const Loop& rim, const Vec3& height, RepairStep& step) {
   Loop top;
   for (const std::int32_t v : rim) top.push_back(mesh.add_vertex(mesh.vertex(v) + height));
@@ -92,7 +92,7 @@ Loop raise_rim(TriangleMesh& mesh, const Loop& rim, const Vec3& height, RepairSt
   return top;
 }
 
-// The loops of boundary edges, in the directions of caps over them; without those that end at an edge of
+// Returns the loops of boundary edges, in the directions of caps over them, but none that ends at an edge of
 // another kind.
 std::vector<Loop> boundary_loops(const std::vector<Edge>& boundary) {
   std::vector<Edge> wanted;
@@ -114,9 +114,9 @@ double signed_volume_if_capped(const TriangleMesh& mesh) {
   return volume;
 }
 
-// [m^3]: what counts more than once where some components had to be turned outside out. An inner skin that
-// crosses the outer one looks like a solid of its own; what it encloses would count twice instead of not at
-// all.
+// Returns the volume [m^3] that counts more than once if some components, but not all, had to be flipped. An
+// inner skin that crosses the outer one looks like a solid of its own; what it encloses would count twice
+// instead of not at all.
 double doubtful_overlap(TriangleMesh mesh) {
   const MeshTopology topology = mesh_topology(mesh);
   std::vector<ComponentReport> components = describe_components(mesh, topology);
@@ -145,7 +145,7 @@ class Attempt {
     if (solid_ && solid_->volume > 0.0) doubtful_share_ = doubtful_overlap(mesh_) / solid_->volume;
   }
 
-  // What stands in the way, if something does.
+  // Returns why the result is not acceptable; nullopt if it is.
   std::optional<SkippedRepair> obstacle() const {
     const auto skipped = [this](RepairObstacle obstacle, double share) {
       return SkippedRepair{RepairKind::kCloseHoles, obstacle, holes_, share};
@@ -218,12 +218,12 @@ class Attempt {
   TriangleMesh mesh_;
   const ClosingOptions& options_;
   bool all_;
-  std::vector<std::int32_t> chosen_;  // vertices of the rims that are asked for by number; ascending
+  std::vector<std::int32_t> chosen_;  // vertices of the rims requested by number; ascending
   RepairReport report_;
   std::optional<EnclosedSolid> solid_;
   std::int64_t holes_ = 0;
   std::int64_t raised_ = 0;
-  double bulge_of_holes_ = 0.0;  // [m^3], of those that are no rims
+  double bulge_of_holes_ = 0.0;  // [m^3], of holes that options_.max_change limits
   double doubtful_share_ = 0.0;  // of the volume
   std::int64_t work_left_ = kClosingWork;
 };

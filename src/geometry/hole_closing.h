@@ -3,11 +3,10 @@
 // Unlike the automatic repair this adds a surface that the mesh does not have, so that no bound on the error
 // exists. Two estimates stand for it:
 //   bulge         the volume of a hemisphere over each cap: what a true surface that is not flat may hold
-//   disagreement  between the volumes under three caps of the same loop: the one of least area, the one that
-//   is
-//                 flat in projection, and a fan around the mean of its vertices. 0 for a flat loop.
+//   disagreement  of the volumes under three caps of the same loop: the one of least area, the one by ear
+//                 clipping in projection, and a fan around the mean of its vertices. It is 0 for a flat loop.
 // A loop of up to 1,000 edges gets the cap of least area, which follows a deck with sheer; a longer one gets
-// the flat one.
+// the cap by ear clipping.
 //
 // Loops of boundary edges are closed first, and the mesh is then repaired again, so that walls inside it are
 // told from its surface. Where edges are left unmatched after that, the net chain of what is missing is
@@ -36,8 +35,8 @@ struct ClosingOptions {
   // their bulge.
   double freeboard = 0.0;
   Vec3 up_B = Vec3::UnitZ();  // unit length
-  // Greatest bulge of the holes, and greatest disagreement of all caps, as a share of the volume; of the
-  // latter at most kMaxCapDisagreement.
+  // Limit on the bulge of the holes and on the disagreement of all caps, as a share of the volume. The limit
+  // on the disagreement is never above kMaxCapDisagreement.
   double max_change = kDefaultMaxChange;
 
   bool empty() const { return !holes && !all_rims && rims.empty() && freeboard == 0.0; }
@@ -57,7 +56,8 @@ struct ClosingEstimate {
 // and the caps' n^3 up to some seconds.
 void close_holes(TriangleMesh& mesh, const ClosingOptions& options, bool automatic, RepairReport& report);
 
-// Returns nullopt if the mesh encloses no volume even then. Complexity: that of close_holes().
+// Estimates what closing all holes would do; nullopt if the mesh encloses no volume even then. Complexity:
+// that of close_holes().
 std::optional<ClosingEstimate> estimate_closing(const TriangleMesh& mesh);
 
 }  // namespace buoyancy

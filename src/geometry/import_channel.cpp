@@ -20,7 +20,7 @@ namespace {
 
 enum class Kind : std::int64_t { kError, kMesh, kFile };
 
-// What every message of the importer begins with. kFile has one text, the file's name.
+// Every message of the importer begins with this header. A kFile message has one text, the file's name.
 struct Header {
   Kind kind = Kind::kError;
   std::array<std::uint64_t, 4> text_bytes{};  // sizes of the texts: four for an Error, three for a mesh
@@ -122,7 +122,7 @@ class Reader {
     return true;
   }
 
-  // Grows with the bytes that arrive: a false count costs address space, not memory.
+  // The vector grows with the bytes that arrive: a false count costs address space, not memory.
   template <typename T>
   bool read_array(std::vector<T>& values, std::uint64_t count) {
     constexpr std::uint64_t kChunk = 65'536;

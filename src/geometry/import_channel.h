@@ -1,8 +1,8 @@
-// Internal to mesh import: what this process and the importer say to each other through a pair of connected
-// sockets. This process sends one request; the importer asks for the files that it needs, gets a descriptor
-// for each, and sends the mesh or an error.
+// Internal to mesh import: the protocol of this process and the importer on a pair of connected sockets. This
+// process sends one request; the importer asks for the files that it needs, gets a descriptor for each, and
+// sends the mesh or an error.
 //
-// The file being read may corrupt the importer, so this side trusts nothing: it checks counts against the
+// The file being read may corrupt the importer, so this process trusts nothing: it checks counts against the
 // limits before it reserves memory, bounds texts and makes them printable, touches memory only for bytes that
 // have arrived, and checks that vertex indices are in range and that polygons have three corners or more. The
 // caller checks the coordinates.
@@ -25,7 +25,7 @@ namespace buoyancy {
 using ImportDeadline = std::chrono::steady_clock::time_point;
 
 // Both sides are of the same architecture but perhaps of different releases: the importer ends with
-// kOtherProtocolExit if its first argument is not this number, which every change of the format raises.
+// kOtherProtocolExit if its first argument is not this number. Raise it with every change of the format.
 inline constexpr const char* kImportProtocol = "2";
 
 // The importer's descriptor of its socket.
@@ -48,13 +48,13 @@ struct StoredMesh {
 };
 
 struct ImportRequest {
-  std::string name;  // the mesh's, in its folder
+  std::string name;  // of the mesh file, in its folder
   MeshFormat format = MeshFormat::kObj;
   ImportLimits limits;
 };
 
-// The importer's side. Each returns false, nullopt or no descriptor if the other side has closed its socket;
-// request_file() returns no descriptor for a file that may not be read, too.
+// The importer calls these functions. Each returns false, nullopt or no descriptor if the other side has
+// closed its socket; request_file() returns no descriptor for a file that may not be read, too.
 std::optional<ImportRequest> receive_request(int socket);
 UniqueFd request_file(int socket, std::string_view name);
 bool send_import(int socket, const Expected<StoredMesh>& result);
@@ -67,7 +67,7 @@ enum class ImportFailure {
 // Returns the text with every byte that is no printable ASCII character replaced by '?'.
 std::string printable_ascii(std::string text);
 
-// This side. send_request() does not block: the socket is empty.
+// The process that imports calls these functions. send_request() does not block: the socket is empty.
 bool send_request(int socket, const ImportRequest& request);
 // Opens files for the importer and waits for the complete result until the deadline. Throws std::bad_alloc
 // when this process is out of memory.

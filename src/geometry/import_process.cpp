@@ -121,7 +121,7 @@ Error explain(std::optional<int> status, const ImportLimits& limits) {
   return crashed("failed (exit status " + std::to_string(WEXITSTATUS(*status)) + ")");
 }
 
-// What the importer starts with: its socket, no other descriptor, no environment, no handler of ours.
+// The importer starts with its socket and no other descriptor, environment or signal handler.
 class SpawnSettings {
  public:
   explicit SpawnSettings(int socket) {

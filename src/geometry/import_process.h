@@ -1,8 +1,8 @@
 // Internal to mesh import: runs the importer in a child process and returns its result, or the reason for its
 // failure: a crash, a timeout or the memory limit.
 //
-// The child is the program buoyancy-import-mesh (src/importer), started without descriptors, environment or
-// handlers of this process, and without its rights. It ends with its parent. Linux only.
+// The child is the program buoyancy-import-mesh (src/importer). It gets no descriptors, environment, signal
+// handlers or rights of this process. It ends with its parent. Linux only.
 #pragma once
 
 #include <filesystem>

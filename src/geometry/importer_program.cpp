@@ -36,7 +36,8 @@ fs::path own_file() {
   return started_as == nullptr ? fs::path() : fs::canonical(started_as, error);
 }
 
-// Programs may lie in folders that others can write to, such as /tmp, and the places tried are beside them.
+// The places tried are beside the calling program, perhaps in a folder that others can write to, such as
+// /tmp.
 bool is_trusted(const fs::path& program, std::optional<uid_t> owner) {
   struct stat status {};
   return ::lstat(program.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
@@ -55,7 +56,7 @@ Expected<std::string> importer_program() {
   if (const fs::path file = own_file(); !file.empty()) {
     struct stat status {};
     if (::stat(file.c_str(), &status) == 0) owner = status.st_uid;
-    // From bin and lib, from lib/x86_64-linux-gnu, from lib/python3/dist-packages/buoyancy.
+    // These lead to the prefix from bin and lib, lib/x86_64-linux-gnu and lib/python3/dist-packages/buoyancy.
     for (const char* prefix : {"..", "../..", "../../../.."}) {
       places.push_back((file.parent_path() / prefix / "libexec" / kProgram).lexically_normal());
     }

@@ -108,7 +108,7 @@ class Cells {
     return rays;
   }
 
-  // The vertex that is last by x, y, z.
+  // Returns the lexicographically last vertex by x, y and z.
   std::int32_t extreme_vertex() const {
     std::int32_t last = mesh_->triangles.front()[0];
     const auto key = [this](std::int32_t v) {
@@ -123,8 +123,9 @@ class Cells {
     return last;
   }
 
-  // Seen from above, all edges at the extreme vertex lie within half a turn. Beside the outermost of these,
-  // to its right, and above those that coincide with it seen from above, is no face.
+  // Sets the cell of the outside; returns false if it is not found. Seen from above, all edges at the extreme
+  // vertex lie within half a turn, and no face lies to the right of the outermost one, the topmost if several
+  // coincide.
   bool find_outside(const EdgeUses& edges) {
     const std::int32_t v = extreme_vertex();
     const Vec3 apex = mesh_->vertex(v);
@@ -142,7 +143,7 @@ class Cells {
         const Vec3 so_far = mesh_->vertex(outermost);
         int turn = orient_2d(above(apex), above(so_far), above(end));
         if (turn == 0) {
-          // The same direction from above: the steeper one is above the other.
+          // Seen from above, both have the same direction: the steeper one is above the other.
           const Eigen::Index across = so_far.x() != apex.x() ? 0 : 1;
           turn = orient_2d({apex(across), apex.z()}, {so_far(across), so_far.z()}, {end(across), end.z()});
         }
@@ -184,7 +185,7 @@ struct Verdict {
   RepairObstacle obstacle = RepairObstacle::kLeak;
 };
 
-// Returns the faces connected through edges, of those that are marked.
+// Returns the faces with this fate, grouped by their connection through edges.
 std::vector<FaceList> connected_faces(const TriangleMesh& mesh, const std::vector<Fate>& fates, Fate fate) {
   DisjointSets connected(mesh.triangles.size());
   collect_edge_uses(mesh).for_each_edge([&](std::int32_t, std::span<const EdgeUse> uses) {
@@ -207,9 +208,9 @@ std::vector<FaceList> connected_faces(const TriangleMesh& mesh, const std::vecto
   return lists;
 }
 
-// Whether a sheet is a fin rather than a wall with a hole, through which the outside reaches its back. The
-// free edges of a fin run around most of it, from where it is attached; those of a hole close, or cut off a
-// corner.
+// Returns whether a sheet is a fin rather than a wall with a hole, through which the outside reaches its
+// back. The free edges of a fin run around most of it, from where it is attached; those of a hole close, or
+// cut off a corner.
 bool is_fin(const TriangleMesh& mesh, const FaceList& sheet, const std::vector<Edge>& boundary) {
   std::vector<Edge> free;
   double area = 0.0;
@@ -226,8 +227,7 @@ bool is_fin(const TriangleMesh& mesh, const FaceList& sheet, const std::vector<E
   return measure_hole(mesh, {free, {}}, work_left).area >= 0.5 * area;
 }
 
-// Returns what keeps the removed faces from being removed: they must lie inside the skin, or outside it if
-// they are sheets.
+// Returns an obstacle unless all faces to be removed lie inside the skin, or outside it if they are sheets.
 std::optional<RepairObstacle> misplaced_face(const TriangleMesh& mesh, const std::vector<Fate>& fates,
                                              const std::vector<Triangle>& skin) {
   std::int64_t faces_left = 50'000'000 + 1'000 * static_cast<std::int64_t>(fates.size());
@@ -303,7 +303,7 @@ std::vector<bool> faulty_components(const MeshTopology& topology, const EdgeTabl
   return faulty;
 }
 
-// Faces grouped by faulty component.
+// Returns the faces of each faulty component.
 std::vector<FaceList> faulty_faces(const TriangleMesh& mesh) {
   const MeshTopology topology = mesh_topology(mesh);
   if (topology.misoriented.empty() && topology.non_manifold.empty()) return {};

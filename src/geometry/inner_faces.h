@@ -1,5 +1,5 @@
-// Removes faces inside the surface that bounds a body, as decks and bulkheads, and fins of zero thickness
-// outside it; gives the rest a consistent winding.
+// Removes faces inside the surface that bounds a body, such as decks and bulkheads, and fins of zero
+// thickness outside it; gives the rest a consistent winding.
 #pragma once
 
 #include "geometry/repair_report.h"

@@ -14,7 +14,7 @@
 namespace buoyancy {
 namespace {
 
-// By dynamic programming over all sub-polygons.
+// Appends the triangulation of least area, by dynamic programming over all sub-polygons.
 void cap_with_least_area(const TriangleMesh& mesh, const Loop& loop, std::vector<Triangle>& cap) {
   const std::size_t n = loop.size();
   std::vector<double> area(n * n, 0.0);  // least area of the polygon from i to j

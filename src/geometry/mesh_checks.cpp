@@ -39,7 +39,7 @@ std::string holes_of(const MeshReport& report) {
          between(largest.box) + ")";
 }
 
-// What else to ask for where only some holes are to be closed, by number or as rims that face up.
+// Returns which options also close the other holes if only some are to be closed, by number or as rims.
 std::string left_holes_advice(const MeshReport& report, const ClosingOptions& closing) {
   const auto still_open = [](const SkippedRepair& skipped) {
     return skipped.obstacle == RepairObstacle::kStillOpen;

@@ -20,14 +20,14 @@ std::optional<Error> check_finite(const TriangleMesh& mesh, const std::string& n
 // Requires faces whose extent, area and volume are finite and whose extent and area do not underflow to 0.
 std::optional<Error> check_size(const MeshReport& report);
 
-// Whether every edge is matched, but for a boundary that `open` accepts.
+// Returns whether every edge is matched, except for a boundary that `open` accepts.
 bool edges_are_usable(const MeshTopology& topology, OpenPolicy open);
 
 // Requires edges_are_usable().
 std::optional<Error> check_edges(const TriangleMesh& mesh, const MeshTopology& topology,
                                  const MeshReport& report, const ValidationOptions& options);
 
-// For a mesh of which orient_closed() could not tell which components lie inside which others.
+// Returns the error for a mesh whose components overlap so often that orient_closed() cannot nest them.
 Error too_many_overlaps(const MeshReport& report);
 
 // Requires V > eps (64 |V| + L A), where A is the mesh's sheet_rounding_area(). volume [m^3]: the volume V

@@ -15,13 +15,13 @@ enum class ExportFormat {
   kObj,  // text: coordinates with the digits that give the same doubles
 };
 
-// By the path's extension, ignoring case; nullopt for others than .stl, .ply and .obj.
+// Returns the format of the path's extension, ignoring case; nullopt for others than .stl, .ply and .obj.
 std::optional<ExportFormat> export_format(const std::filesystem::path& path);
 
-// Faces in their order, each with its first corner first. mesh: fewer than 2^32 faces. O(n).
+// Returns a file's bytes, with faces and corners in the mesh's order. Requires fewer than 2^32 faces. O(n).
 std::string export_mesh(const TriangleMesh& mesh, ExportFormat format);
 
-// The mesh as the importer will read it back: coordinates rounded to single precision.
+// Returns the mesh as the importer will read it back: with coordinates rounded to single precision.
 TriangleMesh as_imported(TriangleMesh mesh);
 
 }  // namespace buoyancy

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A pipe is then opened at once, and a terminal does not become this process's own.
+// A pipe then opens without waiting for a writer, and no terminal becomes the controlling terminal.
 constexpr int kOpenFlags = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
 
 bool is_file_of_at_most(int file, std::uint64_t bytes) {
@@ -33,7 +33,7 @@ FileBelow open_below(const fs::path& folder, const std::string& name) {
   how.resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS;
   UniqueFd file(static_cast<int>(::syscall(SYS_openat2, below.value(), name.c_str(), &how, sizeof(how))));
   if (file.valid()) return {std::move(file), false};
-  // Old kernels do not have the call, and old container engines forbid what they do not know.
+  // Old kernels do not have openat2, and old container engines forbid calls that they do not know.
   if (errno == ENOSYS || errno == EPERM) return open_below_by_path(folder, name);
   return {UniqueFd(), errno == EXDEV};
 }

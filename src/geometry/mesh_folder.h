@@ -1,5 +1,5 @@
-// Internal to mesh import: the files that the importer may read. It can open none itself; it asks for them by
-// name, and this side opens them (import_channel.h).
+// Internal to mesh import: opens the files that the importer may read. The importer can open none itself; it
+// requests them by name (import_channel.h).
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct FileBelow {
   bool outside = false;  // the name leads out of the folder: absolute, by "..", or by a symbolic link
 };
 FileBelow open_below(const std::filesystem::path& folder, const std::string& name);
-// The same for kernels without openat2: a link that is set while this function runs may still lead out.
+// Does the same on kernels without openat2. A link that is set while it runs may still lead out.
 FileBelow open_below_by_path(const std::filesystem::path& folder, const std::string& name);
 
 class MeshFolder {

@@ -25,7 +25,7 @@ std::string lowercase_extension(const std::filesystem::path& path);
 // Returns ".obj, .stl, .ply, .off, .dae, .gltf, .glb, .fbx, .3ds, .gdf, .dat", for messages.
 std::string accepted_extensions();
 
-// How to make an accepted file of one with this extension (in lower case), which is not accepted.
+// Returns how to convert a file with this extension (in lower case), which is not accepted, to one that is.
 std::string export_hint(std::string_view extension);
 
 // The format that a file's first bytes indicate.
@@ -34,7 +34,7 @@ struct SniffedFormat {
   std::string_view extension;  // ".ply"; empty if the format is not accepted
 };
 
-// The name of a text file that stands for one that has not been fetched.
+// SniffedFormat::name of a text file that stands for one that Git LFS has not fetched.
 inline constexpr std::string_view kGitLfsPointer = "a Git LFS pointer, not the file itself";
 
 // Returns nullopt if the first bytes match no known format.

@@ -1,13 +1,13 @@
 // Reads a mesh file into triangles, safely for files that crash the importer.
 //
-// assimp runs in a program of its own, with limits on memory and time and without rights: a file on which it
-// crashes, hangs or exhausts memory gives an Error that names the file, and a file may refer only to files in
-// its own folder and below. The geometry is not edited: polygons are read whole and split into triangles that
-// keep every corner (triangulation.h), node transforms are applied in double, and the winding of mirrored
-// nodes is reversed so that normals keep pointing outward; points and lines are left out and counted.
-// Vertices are returned as stored: unwelded, in assimp's single precision. Formats, by extension: OBJ, STL,
-// PLY, OFF, DAE, glTF and GLB, FBX, 3DS. If a file's content does not match its extension, the error names
-// both.
+// A sandboxed program reads files, with limits on memory and time (src/importer): a file on which it crashes,
+// hangs or exhausts memory gives an Error that names the file, and a file may refer only to files in its own
+// folder and below. The geometry is not edited: polygons are read whole and split into triangles that keep
+// every corner (triangulation.h), node transforms are applied in double, and the winding of mirrored nodes is
+// reversed so that normals keep pointing outward; points and lines are left out and counted. Vertices are
+// returned as stored: unwelded, in assimp's single precision, or in double from panel files. Formats, by
+// extension: OBJ, STL, PLY, OFF, DAE, glTF and GLB, FBX, 3DS; panels: GDF (WAMIT), DAT (Nemoh). If a file's
+// content does not match its extension, the error names both.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ struct ImportLimits {
 // Metadata of the file, for the report.
 struct MeshSource {
   std::string format;                   // "Collada", "PLY", ...
-  std::string up_axis;                  // up direction in the file: "y", "z", "x" or "not stated"
+  std::string up_axis;                  // up direction in the file: "z", "-y" (FBX) or "not stated"
   std::string note;                     // how the importer changed axes and units; may be empty
   std::int64_t nodes = 0;               // nodes with triangles, including instances
   std::int64_t ignored_primitives = 0;  // points and lines

@@ -26,7 +26,7 @@ constexpr double kMaxDiagonal = 1e50;   // [m]
 // A body of which moved vertices might have changed a larger share of the volume stays as it was given.
 constexpr double kMaxShareMoved = 1e-2;
 
-constexpr double kMinVolume = 1e-10;  // of a solid, of the cube of its diagonal
+constexpr double kMinVolume = 1e-10;  // of a solid, as a share of the cube of its diagonal
 
 constexpr int kMaxPasses = 3;
 
@@ -37,7 +37,7 @@ constexpr int kMaxRounds = 3;
 class Ladder {
  public:
   explicit Ladder(TriangleMesh& mesh) : mesh_(&mesh), solid_(enclosed_solid(mesh)) {}
-  // Goes on from where another is, with a copy of its mesh.
+  // Continues from the state of another ladder, with a copy of its mesh.
   Ladder(TriangleMesh& mesh, const Ladder& other)
       : mesh_(&mesh), report_(other.report_), solid_(other.solid_) {}
 
@@ -51,7 +51,7 @@ class Ladder {
     report_.steps.back().after = solid_;
   }
 
-  // Takes over the report of one that went on from here; its mesh is now this one's.
+  // Takes over the report of a ladder that continued from here, whose mesh the caller has moved here.
   void take(Ladder& other) {
     report_ = std::move(other.report_);
     solid_ = other.solid_;
@@ -83,8 +83,8 @@ void close(Ladder& ladder, double tolerance) {
   }
 }
 
-// Whether a mesh is not closed only because walls inside it could not be told from the surface. If it was
-// given with both sides of these walls, which cancel, it can stay as it was.
+// Returns whether a mesh is not closed only because walls inside it could not be told from the surface. If it
+// was given with both sides of these walls, which cancel, it can stay as it was.
 bool only_walls_are_in_the_way(const TriangleMesh& mesh, const RepairReport& report) {
   const MeshTopology topology = mesh_topology(mesh);
   return topology.boundary.empty() && !topology.counts.all_matched() &&
@@ -95,7 +95,7 @@ bool only_walls_are_in_the_way(const TriangleMesh& mesh, const RepairReport& rep
          });
 }
 
-// Copies count the volume of a part twice.
+// Returns whether copies were removed, which counted the volume of a part twice.
 bool removed_copies(const RepairReport& report) {
   return std::any_of(report.steps.begin(), report.steps.end(),
                      [](const RepairStep& step) { return step.kind == RepairKind::kRemoveDuplicates; });
@@ -123,8 +123,8 @@ RepairReport repair_once(TriangleMesh& mesh, bool may_stay_open) {
   const auto remove_sheets = [tolerance](TriangleMesh& m, RepairReport& report) {
     remove_flat_sheets(m, tolerance, report);
   };
-  // First, since T-junctions cannot be told from edges of faces that are stored twice; and again, since their
-  // repair gives faces the same corners.
+  // Duplicates are removed first, since T-junctions cannot be told from edges of faces that are stored twice.
+  // They are removed again afterwards, since inserted vertices can make faces equal.
   ladder.run(remove_duplicates);
   const std::size_t steps = ladder.report().steps.size();
   ladder.run(
@@ -164,7 +164,7 @@ RepairReport repair_once(TriangleMesh& mesh, bool may_stay_open) {
       ladder.report() = {{}, {{RepairKind::kWeld, RepairObstacle::kTooThin, faces}}, 0.0, 0.0};
     }
   }
-  // A closed solid that had to be closed again was better off before: its duplicates were no faults.
+  // A closed solid that repair had to move or cap stays as given: its duplicates were no faults.
   const bool moved_or_capped = ladder.report().volume_bound > 0.0 || ladder.report().cap_bulge > 0.0;
   if (given_solid && ladder.solid() && moved_or_capped &&
       given_solid->volume > 0.5 * ladder.solid()->volume) {
@@ -175,7 +175,7 @@ RepairReport repair_once(TriangleMesh& mesh, bool may_stay_open) {
     mesh = given;
     ladder.report() = {{}, std::move(ladder.report().skipped), 0.0, 0.0};
   }
-  // A solid that is open now, since two-sided faces that cancel were taken for parts of its surface.
+  // A solid that is open now stays as given: faces of both sides that cancel were taken for its surface.
   if (given_solid && given_solid->volume > kMinVolume * diagonal * diagonal * diagonal &&
       !ladder.is_closed() && !removed_copies(ladder.report())) {
     mesh = given;
@@ -197,7 +197,7 @@ bool needs_repair(const MeshTopology& topology) {
 
 RepairReport repair_mesh(TriangleMesh& mesh, bool may_stay_open) {
   RepairReport report;
-  // What one pass leaves is in order, but for a few meshes of which a step leaves work for an earlier one.
+  // One pass suffices, except for a few meshes in which a step leaves work for an earlier step.
   for (int pass = 0; pass < kMaxPasses && needs_repair(mesh_topology(mesh)); ++pass) {
     const bool was_matched = mesh_topology(mesh).counts.all_matched();
     const RepairReport more = repair_once(mesh, may_stay_open);

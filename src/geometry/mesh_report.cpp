@@ -90,7 +90,7 @@ Json to_json(const BoundingBox& box) {
   return {{"min", box.min_B}, {"max", box.max_B}};
 }
 
-// number: of the hole, from 1. closing: that of all holes, if it is known.
+// number: of the hole, from 1. closing: estimate for all holes together, if it is known.
 Facts hole_facts(std::size_t number, const HoleReport& hole, const std::optional<ClosingEstimate>& closing) {
   Facts facts;
   facts.add("edges", hole.edges).say("{}: {}", number, pluralize(hole.edges, "edge", "edges"));
@@ -107,7 +107,7 @@ std::int64_t count_components(const MeshReport& report, bool ComponentReport::*f
                        [flag](const ComponentReport& component) { return component.*flag; });
 }
 
-// Adds a list, whose first ones have lines.
+// Adds a list; only its first kMaxListed entries have lines in the text.
 void add_list(std::string_view key, std::vector<Facts> all, Facts& facts) {
   Json& list = facts.list(key);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -117,7 +117,7 @@ void add_list(std::string_view key, std::vector<Facts> all, Facts& facts) {
   if (all.size() > kMaxListed) facts.line("").say("and {} smaller ones", all.size() - kMaxListed);
 }
 
-// A single component has no lines.
+// A single component has no lines in the text.
 void add_components(const MeshReport& report, Facts& facts) {
   std::vector<Facts> components;
   for (const ComponentReport& component : report.components) components.push_back(component_facts(component));
@@ -164,7 +164,7 @@ void say_overlap(const MeshReport& report, Facts& facts) {
   }
 }
 
-// Rounded up to two digits: what a limit has to be at least.
+// Formats a share rounded up to two digits, so that it suffices as a limit.
 std::string at_least(double share) {
   const double unit = std::pow(10.0, std::floor(std::log10(share)) - 1.0);
   return format_number(std::ceil(share / unit * (1.0 - 1e-9)) * unit, 3);
@@ -179,9 +179,9 @@ std::string quoted_for_shell(const std::string& path) {
   return quoted + "'";
 }
 
-// The axis across which the mesh looks like half a body, because much of its largest rim lies in the plane x
-// = 0 or y = 0, at which it ends; empty if there is none. Ships are symmetric in y more often than in x, and
-// z = 0 is where panels end at the water.
+// Returns the axis across which the mesh looks like half a body, because much of its largest rim lies in the
+// plane x = 0 or y = 0, at which the mesh ends; empty if there is none. Ships are symmetric in y more often
+// than in x, and z = 0 is where panels end at the water.
 std::string half_body_axis(const MeshReport& report) {
   constexpr double kMinShare = 0.3;
   const double tolerance = 1e-6 * report.diagonal;
@@ -226,7 +226,7 @@ std::string closing_advice(const MeshReport& report) {
 
 namespace {
 
-// What a mesh without triangles does not have, although its report has the members.
+// Returns the facts of the surface. Without triangles only their JSON is in the report, not their text.
 Facts surface_facts(const MeshReport& report) {
   Facts facts;
   facts.line("edges").say(edges_text(report));

@@ -63,7 +63,7 @@ struct MeshReport {
   std::int64_t dropped_faces = 0;       // use a vertex twice
   std::int64_t duplicate_faces = 0;     // same three vertices as an earlier face
   std::optional<std::int64_t> intersecting_pairs;  // pairs of intersecting faces, if counted
-  // What the volume counts more often than once [m^3]; set of a closed mesh if the pairs are counted.
+  // Volume that counts more than once [m^3]; set for accepted closed meshes if all pairs are counted.
   std::optional<double> overlap_volume;
   bool intersections_cut_off = false;  // there are more than counted: too many to count them all
 
@@ -76,8 +76,8 @@ struct MeshReport {
   bool closed() const { return boundary_edges == 0 && non_manifold_edges == 0 && misoriented_edges == 0; }
 };
 
-// What a user can do about a mesh that is refused for its edges: commands and keys of a scene file, with what
-// they do to the volume. Empty if closing its holes does not help.
+// Returns what a user can do about a mesh that is refused for its edges: commands and keys of a scene file,
+// with what they do to the volume. Empty if closing its holes does not help.
 std::string closing_advice(const MeshReport& report);
 
 // Formats the report as aligned lines for a terminal, without a final newline.

@@ -1,4 +1,4 @@
-// The facts of a mesh's report, as text and as JSON.
+// Returns the facts of a mesh's report, as text and as JSON.
 #pragma once
 
 #include "base/facts.h"
@@ -10,7 +10,7 @@ namespace buoyancy {
 // `max_move` "largest_move". "closing" is null unless the mesh is refused for its edges and could be closed;
 // "advice" is closing_advice().
 Facts mesh_report_facts(const MeshReport& report);
-// Of what a repair did: two lines or more, with the label "repair"; none if it did nothing.
+// Returns what a repair did, as two lines or more with the label "repair"; no line if it did nothing.
 Facts repair_facts(const RepairReport& report);
 
 }  // namespace buoyancy

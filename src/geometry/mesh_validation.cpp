@@ -70,7 +70,7 @@ void report_surface(const TriangleMesh& mesh, MeshReport& report) {
   report.degenerate_faces = total.degenerate_faces;
 }
 
-// [m], of the edges of a hole in the planes x = 0, y = 0 and z = 0.
+// Returns the length of a hole's edges in the planes x = 0, y = 0 and z = 0 [m].
 Vec3 length_in_planes(const TriangleMesh& mesh, const Hole& hole, double tolerance) {
   Vec3 lengths = Vec3::Zero();
   for (const auto& [from, to] : hole.edges) {
@@ -83,7 +83,7 @@ Vec3 length_in_planes(const TriangleMesh& mesh, const Hole& hole, double toleran
   return lengths;
 }
 
-// report: its diagonal is set.
+// Requires report.diagonal to be set.
 void report_topology(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<Hole>& holes,
                      MeshReport& report) {
   report.boundary_edges = topology.counts.boundary;

@@ -15,7 +15,7 @@ std::uint64_t spread_bits(std::uint64_t bits) {
   return (bits | bits << 2U) & 0x1249249249249249U;
 }
 
-// Indices of the triangles along a Morton curve. A power of two as the mesh's scale does not change them.
+// Returns the triangles' indices along a Morton curve, which scaling by a power of two does not change.
 std::vector<std::uint32_t> spatial_order(const TriangleMesh& mesh) {
   const BoundingBox box = bounding_box(mesh);
   const double extent = (box.max_B - box.min_B).maxCoeff();

@@ -1,9 +1,9 @@
 // A mesh's triangles in meshlets: groups of neighbouring triangles with their own copy of their few vertices.
 //
-// For loops over all triangles, whose time is mostly that of finding corners: vertices are read from memory
-// in order, the corners of a meshlet's triangles then lie in the nearest cache, and the order does not depend
-// on that of the mesh's triangles. A vertex is stored once per meshlet that uses it. Triangles come in groups
-// of four, as the loops take them (hydrostatics/wetted_surface.h).
+// They serve loops over all triangles, which spend most of their time on fetching corners: vertices are read
+// from memory in order, the corners of a meshlet's triangles then lie in the nearest cache, and neither
+// depends on the order of the mesh's triangles. A vertex is stored once per meshlet that uses it. Triangles
+// come in groups of four, which the loops process together (hydrostatics/wetted_surface.h).
 #pragma once
 
 #include <array>

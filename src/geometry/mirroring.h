@@ -1,4 +1,4 @@
-// Half a body, completed by its mirror image.
+// Completes half a body by its mirror image.
 #pragma once
 
 #include <array>

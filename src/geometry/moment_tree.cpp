@@ -35,8 +35,8 @@ struct Bounds {
   double width() const { return (max - min).sum(); }
 };
 
-// What is sorted into the tree: a triangle or a leaf. The float32 position decides on which side of a split
-// it goes.
+// A triangle or a leaf that is sorted into the tree. Its float32 position decides on which side of a split it
+// goes.
 struct Item {
   std::array<float, 3> position;
   std::uint32_t index;
@@ -48,7 +48,7 @@ Item make_item(const Vec3& position, std::size_t index) {
       static_cast<std::uint32_t>(index)};
 }
 
-// Returns the axes, that on which the items of the range spread most first.
+// Returns the axes in descending order of the spread of the range's items along them.
 std::array<std::size_t, 3> axes_by_spread(const std::vector<Item>& items, const Range& range) {
   std::array<float, 3> low = items[range.begin].position;
   std::array<float, 3> high = low;
@@ -83,7 +83,7 @@ std::pair<Range, Range> split(std::vector<Item>& items, const Range& range, std:
   return halves_at(range, left);
 }
 
-// About half of `size`, a multiple of `unit` where that splits it.
+// Returns about half of `size`: a multiple of `unit` if that leaves neither part empty.
 std::size_t left_share(std::size_t size, std::size_t unit) {
   const std::size_t left = (size / 2 + unit / 2) / unit * unit;
   return left == 0 || left >= size ? size / 2 : left;
@@ -144,7 +144,7 @@ class LeafCutter {
         best_items_.assign(first, last);
       }
       if (all_fit) break;
-      // Only a few more parts than asked for can be avoided by other cuts.
+      // Other cuts can avoid only a few of the surplus leaves.
       parts = std::max(parts + 1, 3 * leaves_.size() / 4);
     }
     std::copy(best_items_.begin(), best_items_.end(), first);
@@ -167,7 +167,7 @@ class LeafCutter {
     }
     if (parts == 3 && cut_in_three(range)) return true;
     const std::size_t left_parts = parts / 2;
-    // As many whole leaves as there are parts, where the range has so many triangles.
+    // The left part gets leaves of `size` triangles, as far as each of the right parts keeps one triangle.
     const std::size_t size = (range.size() + parts - 1) / parts;
     const std::size_t left = std::min(left_parts * size, range.size() - (parts - left_parts));
     const auto [first, second] = split(items_, range, left);
@@ -207,7 +207,7 @@ class LeafCutter {
     return false;
   }
 
-  // How many of the items from the first on fit into one leaf.
+  // Returns how many of the items from the first on fit into one leaf.
   template <typename Iterator>
   std::size_t count_that_fit(Iterator first, Iterator last) const {
     LeafVertices vertices;
@@ -287,7 +287,7 @@ class Builder {
   static constexpr std::size_t kTask = 12'000;         // triangles
   static constexpr std::size_t kLeavesPerTask = 256;
 
-  // What a parent needs to know of a child.
+  // The sums and bounds of a child, from which those of its parent follow.
   struct Subtree {
     Bounds bounds;
     SurfaceMoments<double> moments;
@@ -323,7 +323,7 @@ class Builder {
         reach = std::max(reach, surface_.vertex(vertex).cwiseAbs().maxCoeff());
       }
     }
-    // At least the least normal number: coordinates are then divided by them without overflow.
+    // The powers are at least the smallest normal number, so that divisions by them do not overflow.
     const auto power_of_two = [](int exponent) {
       return std::ldexp(1.0, std::max(exponent, std::numeric_limits<double>::min_exponent - 1));
     };
@@ -351,8 +351,7 @@ class Builder {
     for (const std::vector<Range>& some : leaves) leaves_.insert(leaves_.end(), some.begin(), some.end());
   }
 
-  // Builds a full tree over the leaves, level by level in the sense that a node's children are numbered
-  // before theirs.
+  // Builds a full tree over the leaves. The children of a node are numbered before their own children.
   void build_nodes() {
     std::vector<Item> order;
     order.reserve(leaves_.size());
@@ -517,7 +516,7 @@ class Builder {
     return edges[1] * edges[2] * edges[2];
   }
 
-  // From the leaves up: a node's number is greater than its parent's.
+  // Goes from the last node to the root, since a node's number is greater than its parent's.
   void fill_nodes() {
     for (auto& moments : tree_.moments) moments.resize(num_children_);
     tree_.areas.resize(num_children_);
@@ -545,7 +544,7 @@ class Builder {
     }
   }
 
-  // Exact, because the unit is a power of two.
+  // Divisions and products are exact, because the unit is a power of two.
   void set_bounds(TreeNode& node, std::size_t i, const Bounds& bounds) {
     for (std::size_t a = 0; a < 3; ++a) {
       const auto axis = static_cast<int>(a);

@@ -15,8 +15,8 @@
 // Vertices are stored exactly. Mesh files hold float32 coordinates, and a leaf's centre is chosen such that
 // the vertices about it are float32 numbers too; the leaves of other meshes hold double.
 //
-// Complexity: build O(n log n), below 1 us per triangle. Memory: about 30 to 35 B per triangle, for meshes
-// that float32 does not hold about 45 to 50 (docs/measurements.md, "The tree"). Query: hierarchical.h.
+// Complexity: build O(n log n), below 1 us per triangle. Memory: about 30 to 35 B per triangle, or 45 to 50 B
+// if float32 does not hold the coordinates (docs/measurements.md, "The tree"). Query: hierarchical.h.
 #pragma once
 
 #include <array>
@@ -101,8 +101,8 @@ struct alignas(64) TreeLeaf : LeafPatch {
 // Lengths are in metres, or in the unit of the mesh file's coordinates: see `scale`.
 struct MomentTree {
   // The tree's point y is at scale y + offset, B axes, relative to the mesh's centre c. A mesh that a scene
-  // scales keeps the file's coordinates, which float32 holds, in its tree. Otherwise 1 and 0: everything
-  // below is in metres and relative to c.
+  // scales keeps the file's coordinates, which float32 holds, in its tree. Otherwise scale is 1 and offset 0:
+  // everything below is in metres and relative to c.
   double scale = 1.0;          // [m] per unit of length of the tree
   Vec3 offset = Vec3::Zero();  // [m]
 

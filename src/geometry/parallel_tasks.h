@@ -11,7 +11,7 @@
 
 namespace buoyancy {
 
-// The number of threads that is worth using for work of some milliseconds.
+// Returns the number of threads that is worth using for work of some milliseconds.
 inline std::size_t max_parallel_tasks() {
   return std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, 8);
 }

@@ -12,9 +12,9 @@ namespace {
 struct KindText {
   RepairKind kind;
   std::string_view name;
-  const char* singular;  // of what it counts
+  const char* singular;  // name of one item that the step counts
   const char* plural;
-  std::string_view done;  // with it
+  std::string_view done;  // what it did with them
 };
 constexpr std::array kKinds{
     KindText{RepairKind::kWeld, "weld", "vertex", "vertices", " merged with others beside them"},
@@ -66,7 +66,7 @@ std::string volume_text(const std::optional<EnclosedSolid>& solid) {
   return solid ? format_number(solid->volume) + " m^3" : "not closed";
 }
 
-// Is what caps over holes disagree about rounding of their coordinates?
+// Returns whether caps over holes disagree by no more than the rounding of coordinates.
 bool is_flat(const RepairReport& report) {
   return report.cap_disagreement <= 1e-6 * report.cap_bulge;
 }

@@ -1,5 +1,5 @@
-// What the repair of a mesh did: the automatic one (mesh_repair.h) and what a user asked for (mirroring.h,
-// hole_closing.h).
+// Reports what the repair of a mesh did: the automatic one (mesh_repair.h) and that which a user asked for
+// (mirroring.h, hole_closing.h).
 #pragma once
 
 #include <cstdint>
@@ -61,8 +61,8 @@ std::string_view to_string(RepairObstacle obstacle);
 struct SkippedRepair {
   RepairKind kind = RepairKind::kWeld;
   RepairObstacle obstacle = RepairObstacle::kTooMany;
-  std::int64_t faces = 0;  // concerned; of kWeld and kInsertVertices unmatched edges, of kCloseHoles holes
-  double share = 0.0;      // of kBulge and kDisagreement: of the volume
+  std::int64_t faces = 0;  // affected; for kWeld and kInsertVertices unmatched edges, for kCloseHoles holes
+  double share = 0.0;      // of the volume; for kBulge and kDisagreement
 
   bool operator==(const SkippedRepair&) const = default;
 };
@@ -76,8 +76,7 @@ struct RepairReport {
   // Estimate, not a bound, of the volume that the true surface over the capped holes may add or remove: that
   // of a hemisphere over each [m^3].
   double cap_bulge = 0.0;
-  // Estimate likewise: how much the volumes under different caps of the holes that a user closes differ
-  // [m^3].
+  // Estimate of how much the volumes under different caps of the holes that a user closes differ [m^3].
   double cap_disagreement = 0.0;
 
   bool empty() const { return steps.empty() && skipped.empty(); }

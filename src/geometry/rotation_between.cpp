@@ -5,7 +5,7 @@
 namespace buoyancy {
 namespace {
 
-// A unit vector perpendicular to two unit vectors that are opposite, or nearly so.
+// Returns a unit vector perpendicular to two unit vectors that are opposite, or nearly so.
 Vec3 common_perpendicular(const Vec3& from, const Vec3& to) {
   constexpr double kRoundingOfUnitVectors = 1e-14;
   const Vec3 sum = from + to;

@@ -42,7 +42,7 @@ int projection_axis(const Corners& t) {
   return (axis + 2) % 3;
 }
 
-// Whether a and b lie on the same side of `from`. Requires that all three are collinear.
+// Returns whether a and b lie on the same side of `from`. Requires that all three are collinear.
 bool same_direction(const Point2& from, const Point2& a, const Point2& b) {
   const int axis = a.x() != from.x() ? 0 : 1;
   return (a(axis) > from(axis)) == (b(axis) > from(axis)) && b(axis) != from(axis);
@@ -103,7 +103,7 @@ bool filtered_on_one_side(const Corners& plane, const Vec3& p, const Vec3& q) {
   return side != 0 && orient_3d_filtered(plane[0], plane[1], plane[2], q) == side;
 }
 
-// Whether, projected along an axis of s, an edge of one triangle separates it strictly from the other.
+// Returns whether, in a projection of s, an edge of one triangle separates it strictly from the other.
 bool separated_in_projection(const Corners& s, const Corners& t) {
   const int axis = projection_axis(s);
   const std::array<Corners2, 2> flat{project_corners(axis, s), project_corners(axis, t)};
@@ -134,7 +134,7 @@ bool meet_without_common_vertex(const Corners& s, const Corners& t) {
   return false;
 }
 
-// Requires s[0] = t[0]. Whether, projected along an axis of s, a line through the common vertex and another
+// Requires s[0] = t[0]. Returns whether, in a projection of s, a line through the common vertex and another
 // vertex has the triangles on different sides, without a common direction along it.
 bool separated_at_vertex_in_projection(const Corners& s, const Corners& t) {
   const int axis = projection_axis(s);
@@ -156,14 +156,14 @@ bool separated_at_vertex_in_projection(const Corners& s, const Corners& t) {
   return false;
 }
 
-// Requires s[0] = t[0]. If they share other points, one of these lies on an edge opposite the common vertex.
+// Requires s[0] = t[0]. If the triangles share other points, one lies on an edge opposite the common vertex.
 bool meet_beyond_common_vertex(const Corners& s, const Corners& t) {
   if (filtered_on_one_side(s, t[1], t[2]) || filtered_on_one_side(t, s[1], s[2])) return false;
   if (separated_at_vertex_in_projection(s, t)) return false;
   return segment_meets_triangle(s[1], s[2], t) || segment_meets_triangle(t[1], t[2], s);
 }
 
-// Requires s[0] = t[0], s[1] = t[1]. They share other points only if one is folded flat onto the other.
+// Requires s[0] = t[0], s[1] = t[1]. The triangles share other points only if folded flat onto each other.
 bool meet_beyond_common_edge(const Corners& s, const Corners& t) {
   if (orient_3d_filtered(s[0], s[1], s[2], t[2]) != 0) return false;
   const int axis = projection_axis(s);

@@ -15,7 +15,7 @@
 
 namespace buoyancy {
 
-// Returns that sum [m^2]. Complexity: O(faces).
+// Returns the sum of max(area, longest edge^2 / 4) over the faces [m^2]. Complexity: O(faces).
 double sheet_rounding_area(const TriangleMesh& mesh);
 
 }  // namespace buoyancy

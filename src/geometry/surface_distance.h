@@ -1,4 +1,4 @@
-// How far the surface of one mesh is from another's.
+// Measures how far the surface of one mesh is from another's.
 #pragma once
 
 #include "geometry/aabb_tree.h"
@@ -12,7 +12,7 @@ class SurfaceDistance {
   // mesh: at least one triangle; must outlive this object. O(n log n).
   explicit SurfaceDistance(const TriangleMesh& mesh);
 
-  // [m], from the point to the nearest of the surface. O(log n) for points near it.
+  // Returns the distance from the point to the surface [m]. O(log n) for points near the surface.
   double to(const Vec3& point);
 
  private:
@@ -21,8 +21,8 @@ class SurfaceDistance {
   std::int32_t last_ = 0;  // the nearest triangle of the last call, where the next is likely too
 };
 
-// [m]: the largest distance from a vertex or a triangle's centroid of `from` to the surface of `to`; that of
-// a point between them may be larger by less than the size of its triangle. O(n log m) for meshes that are
+// Returns the largest distance [m] from a vertex or a triangle's centroid of `from` to the surface of `to`.
+// Another point of a triangle may be farther away, by less than the triangle's size. O(n log m) for meshes
 // near each other.
 double largest_distance(const TriangleMesh& from, const TriangleMesh& to);
 

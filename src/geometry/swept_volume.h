@@ -1,4 +1,4 @@
-// Areas of faces, and bounds on the volume that moving vertices changes.
+// Computes areas of faces, and bounds on the volume that moving vertices changes.
 #pragma once
 
 #include <Eigen/Geometry>

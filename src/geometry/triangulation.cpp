@@ -20,8 +20,9 @@ constexpr std::size_t kMaxSearched = 16;       // corners of polygons whose extr
 constexpr std::int64_t kStepsPerCorner = 300;  // of ear clipping, beside kFirstSteps
 constexpr std::int64_t kFirstSteps = 1'000'000;
 
-// The exact sum of doubles, rounded once: the same in whatever order they are added, and the negative for the
-// negatives. Source: J. R. Shewchuk, see exact_predicates.h; the rounding is that of Python's math.fsum().
+// Sums doubles exactly and rounds once. The result does not depend on the order of the terms, and negated
+// terms give the negated result. Source: J. R. Shewchuk, see exact_predicates.h; the rounding is that of
+// Python's math.fsum().
 class ExactSum {
  public:
   void add(double value) {
@@ -44,7 +45,7 @@ class ExactSum {
       sum = next.hi;
       rest = next.lo;
     }
-    // A rest of half a unit in the last place was rounded to even: what follows decides.
+    // A rest of half a unit in the last place was rounded to even, but the next smaller term decides.
     if (left > 0 && (rest < 0.0) == (terms_[left - 1] < 0.0)) {
       const double next = sum + 2.0 * rest;
       if (next - sum == 2.0 * rest) return next;
@@ -135,7 +136,7 @@ class BlockingCorners {
 
   static std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
-  // Does the whole box lie to the right of the line from a to b?
+  // Returns whether the whole box lies to the right of the line from a to b.
   static bool is_beyond(const Node& node, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     const Eigen::Vector2d leftmost(b.y() > a.y() ? node.min.x() : node.max.x(),
                                    b.x() > a.x() ? node.max.y() : node.min.y());
@@ -232,7 +233,7 @@ class EarClipping {
 
   static std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
-  // Counter-clockwise, without rounding.
+  // Projects the corners without rounding, such that they run counter-clockwise.
   void project(bool is_seen_from_behind, int axis) {
     points_.clear();
     for (const Vec3& place : *places_) {
@@ -313,7 +314,7 @@ class EarClipping {
   const std::vector<Vec3>* places_ = nullptr;
   std::vector<Eigen::Vector2d> points_;
   std::vector<std::int32_t> previous_, next_;
-  std::vector<bool> is_convex_;        // strictly; once true, never asked again
+  std::vector<bool> is_convex_;        // strictly; stays true once it is
   std::vector<std::int32_t> version_;  // of a corner as a candidate: raised when its neighbours change
   std::priority_queue<Candidate> candidates_;
   std::vector<std::int32_t> blocking_list_;
@@ -348,7 +349,7 @@ class Triangulation {
   const PolygonSplit& split() const { return split_; }
 
  private:
-  // Takes the corners, without those at the place of the one before.
+  // Reads the corners, but none at the same place as the one before.
   void read(std::span<const std::int32_t> polygon) {
     corners_.clear();
     places_.clear();
@@ -419,8 +420,8 @@ class Triangulation {
     half_thickness_ = 0.5 * (highest - lowest);
   }
 
-  // Of the plane through the mean, the corner that is farthest from it and the one farthest from the line
-  // through both; zero if all lie on a line. For polygons whose area vector vanishes, such as a bow tie.
+  // Returns the unit normal of the plane through the mean, the corner farthest from it and the corner
+  // farthest from the line through both; zero if all lie on a line. It serves polygons without area vector.
   Vec3 normal_of_extent() const {
     const Vec3 along = *std::max_element(
         from_mean_.begin(), from_mean_.end(),
@@ -434,7 +435,8 @@ class Triangulation {
     return across.normalized();
   }
 
-  // Does no triangle of the fan around the mean face the other way than the polygon, in its projection?
+  // Returns whether, in projection, all triangles of the fan around the mean face the same way as the
+  // polygon.
   bool mean_sees_all_corners() const {
     const int front = area_vector_[axis_] > 0.0 ? 1 : -1;
     const Eigen::Vector2d mean = project_along_axis(axis_, mean_);
@@ -462,7 +464,7 @@ class Triangulation {
     }
   }
 
-  // By dynamic programming over the chains from corner i to corner j, each closed by a diagonal.
+  // Uses dynamic programming over the chains from corner i to corner j, each closed by a diagonal.
   double volume_between_splits() const {
     const std::size_t count = from_mean_.size();
     if (count > kMaxSearched) return area_vector_.norm() * 2.0 * half_thickness_;

@@ -48,19 +48,19 @@ struct PolygonSplit {
   std::int64_t centers = 0;       // vertices added
   double largest_distance = 0.0;  // of a corner from the plane amid its polygon's corners [m]
   // Of all non-planar polygons: between the largest and the smallest volume that triangulations without
-  // further vertices give [m^3]. Of polygons with more than 16 corners an upper bound, area times thickness.
+  // further vertices give [m^3]. For more than 16 corners it is an upper bound, area times thickness.
   double split_volume = 0.0;
 };
 
-// Whether polygons that are not planar get a vertex at their mean. Without it they are split as planar ones
-// are.
+// Says whether polygons that are not planar get a vertex at their mean. Without it they are split as planar
+// ones are.
 enum class AddCenters { kNo, kYes };
 
 // Appends the triangles of the polygons to mesh.triangles, in order, and the added vertices to its vertices.
-// Triangles stay as they are. Corners of a larger polygon that lie at the place of the one before count once.
-// Requires finite coordinates, valid indices and at least three corners per polygon. Complexity: for polygons
-// of n corners O(n log n) in most cases; at most O(n) after that, about 3 us per corner
-// and 10 ms per polygon: where the search for ears takes longer, the rest is split into a fan.
+// Triangles stay as they are. In larger polygons, consecutive corners at the same place count once. Requires
+// finite coordinates, valid indices and at least three corners per polygon. Complexity: O(n log n) for a
+// polygon of n corners in most cases. A search for ears that takes more than about 3 us per corner and 10 ms
+// per polygon ends, and the rest is split into a fan.
 PolygonSplit triangulate(const Polygons& polygons, TriangleMesh& mesh, AddCenters centers = AddCenters::kYes);
 
 }  // namespace buoyancy

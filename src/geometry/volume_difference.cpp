@@ -20,7 +20,7 @@ namespace {
 using Corner = std::array<double, 3>;
 using Face = std::array<Corner, 3>;
 
-// The faces of a mesh by their coordinates, each from its smallest corner on, sorted.
+// Returns the faces of a mesh by their coordinates, each from its smallest corner on, sorted.
 std::vector<Face> sorted_faces(const TriangleMesh& mesh) {
   std::vector<Face> faces;
   faces.reserve(mesh.triangles.size());
@@ -37,7 +37,7 @@ std::vector<Face> sorted_faces(const TriangleMesh& mesh) {
   return faces;
 }
 
-// The faces of either mesh that the other lacks.
+// Returns the faces of either mesh that the other lacks.
 std::vector<Face> different_faces(const TriangleMesh& a, const TriangleMesh& b) {
   const std::vector<Face> of_a = sorted_faces(a);
   const std::vector<Face> of_b = sorted_faces(b);
@@ -51,7 +51,7 @@ BoundingBox common_hull(const BoundingBox& a, const BoundingBox& b) {
   return {a.min_B.cwiseMin(b.min_B), a.max_B.cwiseMax(b.max_B)};
 }
 
-// Merges boxes of the same set.
+// Merges the boxes of each set.
 std::vector<BoundingBox> merged(const std::vector<BoundingBox>& boxes, DisjointSets& sets) {
   std::vector<BoundingBox> result;
   std::map<std::int32_t, std::size_t> place_of;
@@ -67,10 +67,10 @@ std::vector<BoundingBox> merged(const std::vector<BoundingBox>& boxes, DisjointS
   return result;
 }
 
-// Boxes without a common point outside which the winding numbers of both meshes are the same. The difference
-// of these is the winding number of the faces in which the meshes differ, those of one mesh turned. Such
-// faces form closed surfaces, one for each set that hangs together by its corners. The boxes of such sets are
-// merged first, since their faces may overlap each other in all pairs.
+// Returns disjoint boxes outside which both meshes have the same winding numbers. Their difference is the
+// winding number of the faces in which the meshes differ, those of one mesh reversed. Such faces form closed
+// surfaces, one for each set connected by corners. The boxes of such sets are merged first, since their faces
+// may overlap each other in all pairs.
 std::vector<BoundingBox> boxes_of_difference(const TriangleMesh& a, const TriangleMesh& b) {
   std::vector<BoundingBox> boxes;
   std::map<Corner, std::int32_t> first_face_at;
@@ -105,7 +105,7 @@ class IndexedMesh {
  public:
   explicit IndexedMesh(const TriangleMesh& mesh) : mesh_(mesh), tree_(boxes_of_faces(mesh, mesh.triangles)) {}
 
-  // The triangles that lines along an axis through the box meet, and perhaps more.
+  // Returns the triangles that lines along an axis through the box meet, and perhaps more.
   TriangleMesh part_along(Eigen::Index axis, const BoundingBox& box) const {
     TriangleMesh part;
     std::map<std::int32_t, std::int32_t> index_of;
@@ -134,22 +134,22 @@ class IndexedMesh {
   AabbTree tree_;
 };
 
-// Opposite each other in pairs, so that what is linear over a column cancels; evenly spread in each
-// direction; and off the places where the axis would meet an edge of a mesh with round coordinates.
+// The places lie opposite each other in pairs, so that terms that are linear over a column cancel. They are
+// spread evenly in each direction, and none puts the axis on an edge of a mesh with round coordinates.
 constexpr std::array<std::array<double, 2>, 6> kPlacesOfAxis{{{0.4147, 0.7497},
                                                               {0.5853, 0.2503},
                                                               {0.0813, 0.4171},
                                                               {0.9187, 0.5829},
                                                               {0.2519, 0.0851},
                                                               {0.7481, 0.9149}}};
-// What an edge along the columns may move by without passing one of these places. [widths of a column]
+// An edge along the columns may move by this without passing one of these places. [widths of a column]
 constexpr double kUnseenWidth = 0.1;
 constexpr std::size_t kPlaces = kPlacesOfAxis.size();
 
-// By how much the axis whose sums agree best counts more than one whose sums are far apart.
+// The axis whose sums agree best counts more by this factor than one whose sums are far apart.
 constexpr double kMaxWeight = 900.0;
 
-// Splits boxes into some 64 in all, so that each part of a curved layer is seen along the axis that suits it.
+// Splits boxes into some 64 in all, so that each part of a curved layer is summed along a suitable axis.
 std::vector<BoundingBox> split(const std::vector<BoundingBox>& boxes) {
   const int parts = boxes.empty() ? 1 : static_cast<int>(std::cbrt(64.5 / static_cast<double>(boxes.size())));
   if (parts <= 1) return boxes;
@@ -198,8 +198,8 @@ AxisSums sums_along(Eigen::Index axis, const BoundingBox& box, const IndexedMesh
 }
 
 // Two axes contradict each other if their means differ by more than their spreads: columns along one of them
-// miss what is thinner than they are, wherever their axes lie. Then neither is trusted more than that.
-// Returns the largest of such differences. [m^3]
+// miss what is thinner than they are, wherever their axes lie. Then the spread of both is raised to that
+// difference. Returns the largest such difference [m^3].
 double widen_contradictions(std::array<AxisSums, 3>& sums) {
   const std::array<AxisSums, 3> given = sums;
   double largest = 0.0;
@@ -219,7 +219,7 @@ struct BoxSum {
   double systematic = 0.0;  // [m^3], errors that may have the same sign in all boxes
 };
 
-// The mean over the axes, with weights that favour those whose sums agree.
+// Returns the mean over the axes, with weights that favour those whose sums agree.
 BoxSum difference_in(const BoundingBox& box, const IndexedMesh& a, const IndexedMesh& b, int columns) {
   std::array<AxisSums, 3> sums;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -244,7 +244,7 @@ BoxSum difference_in(const BoundingBox& box, const IndexedMesh& a, const Indexed
     result.volume += weight * sums[axis].mean;
     result.systematic += weight * sums[axis].rounding;
   }
-  // No more than the columns' sums are apart along any axis: for faces along the axes all are exact.
+  // This is at most the largest spread of the sums, which is rounding alone for faces along the axes.
   result.systematic += std::min(given, kUnseenWidth / columns * result.volume);
   const auto [low, high] = std::minmax_element(at.begin(), at.end());
   result.spread = *high - *low;

@@ -88,7 +88,7 @@ std::vector<Cell> sort_into_cells(const TriangleMesh& mesh, const std::vector<st
   return cells;
 }
 
-// comparisons_left: is reduced by those that were made, perhaps below 0.
+// comparisons_left is reduced by the comparisons made, perhaps to below 0.
 void unite_cells(const TriangleMesh& mesh, const Cell& a, const Cell& b, double tolerance,
                  DisjointSets& clusters, std::int64_t& comparisons_left) {
   if (clusters.representative(a.vertices.front()) == clusters.representative(b.vertices.front())) return;

@@ -28,8 +28,8 @@ WeldedMesh weld(const TriangleMesh& mesh);
 
 // Merges vertices of unmatched edges that lie within the tolerance [m] of each other, if that leaves fewer
 // unmatched edges. A chain of close vertices that is longer than two tolerances is not a crack but a finely
-// divided edge, and stays. Ends without a change if too many vertices are close to the tolerance, but not
-// within it, which the report says. mesh: welded exactly.
+// divided edge, and stays. If too many vertices are close to the tolerance, but not within it, nothing
+// changes, which the report says. mesh: welded exactly.
 void weld_within_tolerance(TriangleMesh& mesh, double tolerance, RepairReport& report);
 
 // Returns the mesh with each vertex replaced by its representative, without faces that then use a vertex

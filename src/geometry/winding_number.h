@@ -1,4 +1,4 @@
-// The winding number of a closed surface about a point, by exact predicates.
+// Computes the winding number of a closed surface about a point, by exact predicates.
 #pragma once
 
 #include <cstdint>
