@@ -68,8 +68,8 @@ ErrorBounds error_bounds(const Solver& solver, const WaterPlane& plane, const Di
   return {force, force * lever};
 }
 
-// q v q* / |q|^2, which takes a quaternion of any norm and no square root. Named scalars stay in registers;
-// Eigen's arrays are stored and read again, which a scene of many bodies waits for.
+// Returns q v q* / |q|^2, for which q may have any norm and no square root is needed. Named scalars stay in
+// registers; Eigen's arrays are stored and read again, which costs time in scenes of many bodies.
 Point<double> rotate(const Eigen::Quaterniond& q, double two_by_norm_squared, const Vec3& v) {
   const Point<double> u{q.x(), q.y(), q.z()};
   const Point<double> p = Point<double>::from(v);
@@ -102,7 +102,7 @@ void set_submerged_result(const FullySubmerged& submerged, const Pose& pose, con
             .dropped_torque = 0.0};
 }
 
-// Converts the displaced volume to forces in the world.
+// Converts the displacement in the body frame to force, torque and centre of buoyancy in the world.
 void set_result_from_displacement(const Solver& solver, const WaterPlane& plane, const Pose& pose,
                                   const Water& water, const Vec3& reference_B, BuoyancyResult& result) {
   const HydrostaticMesh& mesh = solver.mesh();
@@ -162,7 +162,7 @@ void set_result_from_bounds(const FullySubmerged& submerged, Immersion immersion
   if (!finite(result)) result = failed_result(BuoyancyStatus::kOutOfRange, immersion);
 }
 
-// buoyancy(), without the quick bounds. plane: solver.plane_in_body(pose, water).
+// Computes buoyancy() without trying the quick bounds first. plane: solver.plane_in_body(pose, water).
 BuoyancyResult buoyancy_at_plane(const Solver& solver, const WaterPlane& plane, const Pose& pose,
                                  const Water& water, const Vec3& reference_B) {
   const HydrostaticMesh& mesh = solver.mesh();

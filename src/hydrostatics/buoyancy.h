@@ -1,5 +1,5 @@
-// Computes the buoyant wrench in the world from a body's pose. Service, replay and client all call
-// buoyancy().
+// Computes the buoyant wrench of water at rest in the world from a body's pose. Every program that needs this
+// wrench calls buoyancy().
 #pragma once
 
 #include <span>
@@ -32,9 +32,10 @@ struct BuoyancyResult {
   double dropped_torque = 0.0;
 };
 
-// pose: finite, with a quaternion other than zero. reference_B: [m], the point that the torque is about.
-// Any status other than kOk leaves force, torque, volume and centre zero. Allocates nothing. Complexity: O(1)
-// for a dry body with every method, and for a fully submerged body with `hierarchical`.
+// pose: finite, with a quaternion other than zero. reference_B: [m], the point that the torque is about. Any
+// status other than kOk leaves force, torque, volume and centre zero. Allocates no more than the solver
+// (Solver). Complexity: O(1) for a dry body with every method, and for a fully submerged body with
+// `hierarchical`.
 //
 // Exact methods publish F = rho g V up and a torque without a component along up; the magnitudes of the
 // dropped components indicate numerical health. The exact methods' force bound is rho g times
@@ -44,15 +45,15 @@ struct BuoyancyResult {
 // (docs/mathematics.md, "Error bounds").
 BuoyancyResult buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B);
 
-// What buoyancy() computes for one of several bodies.
+// The arguments of buoyancy() for one of several bodies.
 struct BuoyancyQuery {
   const Solver* solver = nullptr;
   Pose pose;
   Vec3 reference_B = Vec3::Zero();  // [m]
 };
 
-// Sets results[i] to buoyancy() of queries[i], the same bits; quicker for bodies that cross the surface,
-// since their water planes are computed together. The spans have the same size.
+// Sets results[i] to buoyancy() of queries[i], with the same bits. It is quicker for bodies that cross the
+// surface, since their water planes are computed together. The spans have the same size.
 void buoyancy(std::span<const BuoyancyQuery> queries, const Water& water, std::span<BuoyancyResult> results);
 
 // The part of a fully submerged body's result that does not depend on the pose.
@@ -68,9 +69,9 @@ struct FullySubmerged {
 
 FullySubmerged submerged_constants(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B);
 
-// Sets `result` to that of buoyancy() if quick_immersion() suffices for it: if the body is dry or, with
-// `hierarchical`, fully submerged. Returns false, and leaves `result` unchanged, otherwise. Complexity: O(1).
-// submerged: submerged_constants() of the solver's mesh in this water, about the reference point of the
+// Sets `result` to what buoyancy() returns if quick_immersion() suffices, that is, if the body is dry or,
+// with `hierarchical`, fully submerged. Otherwise returns false and leaves `result` unchanged. Complexity:
+// O(1). submerged: submerged_constants() of the solver's mesh in this water, about the reference point of the
 // torque.
 bool try_buoyancy_from_bounds(const Solver& solver, const FullySubmerged& submerged, const Pose& pose,
                               const Water& water, BuoyancyResult& result);

@@ -1,6 +1,6 @@
 // Converts the surface moments of the wetted surface to the integrals over the displaced volume and over the
-// waterplane, and these to the hydrostatic stiffness. Templated on the number type: double in the product,
-// dual numbers and rationals in the tests.
+// waterplane, and these to the hydrostatic stiffness. It is templated on the number type: the product uses
+// double, the tests also use dual numbers and rationals.
 //
 // With S, N, P the moments about a point o at height z_o over the water, k up, y = x - o, and the sums
 // (Nk)_j = N_jk k_k (docs/mathematics.md, "Conversion to volume integrals"):

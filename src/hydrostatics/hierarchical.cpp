@@ -21,7 +21,7 @@ struct AxisIntegrals {
   double z_squared = 0.0;      // [m^4] int z^2 n_a dA
 };
 
-// Integrals over nodes, with z = k . y + z_c.
+// Returns the integrals over a surface with these moments, with z = k . y + z_c.
 AxisIntegrals integrals(const AxisMoments& moments, const Vec3& k, double z_c) {
   const Vec3 N(moments.N[0], moments.N[1], moments.N[2]);
   Vec3 k_P = Vec3::Zero();
@@ -35,14 +35,14 @@ AxisIntegrals integrals(const AxisMoments& moments, const Vec3& k, double z_c) {
   return {k_N + z_c * moments.S, k_P + z_c * N, k.dot(k_P) + z_c * (2.0 * k_N + z_c * moments.S)};
 }
 
-// [m^2], error of volume and of torque/(rho g L_r) per height error: heights that are off by d change both by
-// at most this times d. No section of a body is larger than half its surface, and k, off by d / L, rotates
-// the lever of V_T; the other half covers overlapping parts, of which more is rotated.
+// Returns the errors of volume and of torque/(rho g L_r) per error d of the heights [m^2]. The volume changes
+// by d times a section of at most half the surface, and k turns by d / L, and with it the lever of V_T. The
+// other half of the surface covers overlapping parts, which turn more volume.
 double sensitivity(const HydrostaticMesh& mesh) {
   return mesh.area + std::abs(mesh.volume) / mesh.diagonal;
 }
 
-// plane: of the tree.
+// plane: in the coordinates of the tree (plane_of_tree()).
 Displacement to_displacement(const WettedTreeSum& sum, const TreeQuery& query, const WaterPlane& plane,
                              const HydrostaticMesh& mesh) {
   const double scale = mesh.tree->scale;
@@ -83,8 +83,8 @@ Displacement to_displacement(const WettedTreeSum& sum, const TreeQuery& query, c
   return result;
 }
 
-// [m^3], the largest error by pruning that keeps the total with rounding within the tolerance. Bounds are
-// held in float32; for sizes beyond its range the result is exact.
+// Returns the largest error by pruning [m^3] that, with rounding, stays within the tolerance. Pruning bounds
+// are held in float32; for sizes beyond its range the budget is 0, and the result is exact.
 double budget(const HydrostaticMesh& mesh, double tolerance) {
   const bool in_range = mesh.diagonal > 1e-9 && mesh.diagonal < 1e9;
   return in_range ? std::max(tolerance * std::abs(mesh.volume) - mesh.max_rounding_bound(), 0.0) : 0.0;

@@ -10,7 +10,7 @@
 //
 // Error: within G_V and G_V L_r (HydrostaticMesh::volume_tolerance) at every depth. A leaf's heights are
 // rounded relative to the leaf's size, because the height of its centre comes from an exact product: a cap of
-// 1e-6 V_T keeps 9 digits. Complexity: O(triangles that the water cuts + log n); no heap.
+// 1e-6 V_T keeps 9 digits. Complexity: O(triangles that the water cuts + log n). Heap: see Solver.
 //
 // With a tolerance the descent stops as soon as the pruned nodes cannot change volume by more than
 // tolerance V_T, or torque/(rho g) by more than that times L_r (pruned_node.h); the result holds the bound

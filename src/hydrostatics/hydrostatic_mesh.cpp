@@ -37,8 +37,8 @@ struct Totals {
   }
 };
 
-// The same triangle, rotated to start with the corner opposite its longest edge; among edges of equal length
-// the first counts.
+// Returns the triangle, rotated to start with the corner opposite its longest edge; of edges of equal length
+// the first one counts.
 Triangle starting_opposite_longest_edge(const Triangle& triangle, const TriangleMesh& mesh) {
   const Vec3 a = mesh.vertex(triangle[0]);
   const Vec3 b = mesh.vertex(triangle[1]);
@@ -59,9 +59,9 @@ struct FileSurface {
   Vec3 center;
 };
 
-// Undoes the scale, for float32 coordinates: the nearest float32 number is the file's coordinate, unless that
-// is so small that it does not matter. Returns nothing if a vertex is not a multiple of a float32 number by
-// the scale, to within the rounding of HydrostaticMesh::surface.
+// Undoes the scale for float32 coordinates: the float32 number nearest to value / scale is the file's
+// coordinate, unless the value is too small to matter. Returns nothing if a vertex is not the scale times a
+// float32 number, to within the rounding of HydrostaticMesh::surface.
 std::optional<FileSurface> file_surface(const HydrostaticMesh& mesh) {
   const Vec3 half = 0.5 * (mesh.box_max - mesh.box_min);
   const Vec3 middle = mesh.center_B + 0.5 * (mesh.box_max + mesh.box_min);

@@ -1,5 +1,5 @@
 // A mesh prepared for queries: coordinates about its own centre c, and the constants that do not depend on a
-// pose. Built once per mesh and scale, shared by every body that uses it, and immutable afterwards.
+// pose. It is built once per mesh and scale, shared by every body that uses it, and immutable afterwards.
 //
 // c is the centre of the bounding box, rounded so that x_B - c is exact for float32 input: a mesh that lies
 // 1e6 m from its own origin loses no digits (docs/mathematics.md, "Re-centring").
@@ -33,9 +33,8 @@ struct HydrostaticMesh {
   double area = 0.0;             // [m^2], A_s
   // [m^2], A_r, the area that rounding errors are proportional to. A face's area is a difference of products
   // of its edges, each of which is rounded: for a needle or a sliver across the axes the products are larger
-  // than their difference. sum of max(area, product of the two shorter edges / 2): the first corner joins
-  // them. Validation does not choose the first corner; its sheet_rounding_area() takes the longest edge
-  // instead.
+  // than their difference. A_r sums max(area, half the product of the two shorter edges), which meet at the
+  // first corner. Validation does not choose that corner, so its sheet_rounding_area() uses the longest edge.
   double rounding_area = 0.0;
   double volume = 0.0;           // [m^3], V_T; for an open mesh the sum about c, which is only a scale
   Vec3 centroid = Vec3::Zero();  // [m], about c: centroid of the enclosed volume; box centre for open meshes
@@ -50,8 +49,8 @@ struct HydrostaticMesh {
 
   // [m^3], the accuracy of the exact solvers in volume and force/(rho g): G_V = eps (64 V_T + L A_s).
   double volume_tolerance() const;
-  // True if G_V is guaranteed: for bodies neither slender nor made of thin faces, A_s >= L^2/8 and
-  // A_r <= 4/3 A_s. For a body thinner than some 1 : 50 across the axes the error is larger by that much.
+  // True if G_V is guaranteed: for bodies neither slender nor made of thin faces, A_s >= L^2/8 and A_r <= 4/3
+  // A_s. Across the axes, a body more slender than about 1 : 50 exceeds G_V in proportion.
   bool meets_volume_tolerance() const;
   // [m^3], the published bound on rounding: 2 eps (64 V_T + L A_r), less than 4 G_V where G_V is guaranteed;
   // elsewhere the exact methods add to it for what is cut (Displacement::rounding).
@@ -63,8 +62,7 @@ struct HydrostaticMesh {
   // torque/(rho g) is G_V L_r.
   double max_lever_arm(const Vec3& reference_B) const;
 
-  // The surface in meshlets, which the paper's methods need. Null until someone sets it: a solver then makes
-  // its own.
+  // The surface in meshlets, which the paper's methods need. Where it is null, a solver builds its own.
   std::shared_ptr<const Meshlets> meshlets;
 };
 

@@ -34,7 +34,7 @@ WettedArea wetted_area(const HydrostaticMesh& mesh, const Pose& pose, const Wate
     moved.h_c_rest = 0.0;
     return std::clamp(wetted_moments(*mesh.tree, moved).area, 0.0, mesh.area);
   };
-  const double rise = 32.0 * kEpsilon * mesh.diagonal;  // more than heights are off
+  const double rise = 32.0 * kEpsilon * mesh.diagonal;  // exceeds the rounding of heights
   const double value = area_at(0.0);
   return {value, std::max(area_at(rise) - value, value - area_at(-rise)) + 64.0 * kEpsilon * mesh.area};
 }

@@ -1,10 +1,10 @@
 // Hydrostatics of a body at its current pose: wetted area, waterplane, metacentres, stiffness.
 //
-// Computed from the moments of the wetted surface (wetted_moments.h, displacement_moments.h), exact to
-// rounding independently of the method that computes the body's wrench. A heel about a horizontal axis
-// through the waterplane's centroid that keeps the displaced volume moves the centre of buoyancy as if the
-// body hung from its metacentre, BM = I/V above it, with I the waterplane's second moment about that axis; GM
-// is the height of the metacentre above the centre of mass.
+// All values come from the moments of the wetted surface (wetted_moments.h, displacement_moments.h) and are
+// exact to rounding, whichever method computes the body's wrench. A heel about a horizontal axis through the
+// waterplane's centroid that keeps the displaced volume moves the centre of buoyancy as if the body hung from
+// its metacentre, BM = I/V above it, with I the waterplane's second moment about that axis; GM is the height
+// of the metacentre above the centre of mass.
 //
 // Undefined values are NaN: points and radii that divide by V where V does not exceed its own error bound G_V
 // (HydrostaticMesh::volume_tolerance), those that divide by A where there is no waterplane, GM without a
@@ -29,7 +29,7 @@ using PrincipalPair = std::array<T, 2>;
 
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// All vectors in W axes, points relative to p_WB. The default values are those of a dry body.
+// All vectors are in W axes, points are relative to p_WB, and the default values are those of a dry body.
 struct Hydrostatics {
   double volume = 0.0;                                // [m^3], V, displaced
   Vec3 center_of_buoyancy_W = Vec3::Constant(kNaN);   // [m]
@@ -42,9 +42,9 @@ struct Hydrostatics {
   PrincipalPair<double> metacentric_radii{kNaN, kNaN};  // [m], BM for heel about those axes
   PrincipalPair<Vec3> metacenters_W{Vec3::Constant(kNaN), Vec3::Constant(kNaN)};  // [m]
   PrincipalPair<double> metacentric_heights{kNaN, kNaN};                          // [m], GM
-  // -d(F, tau)/d(p, theta) of buoyancy alone: rows force [N] and torque [N m] about the reference point;
-  // columns translation [m] and rotation [rad] about W axes through the reference point, which moves with the
-  // body. Not symmetric where the centre of buoyancy does not lie above or below the reference point.
+  // -d(F, tau)/d(p, theta) of buoyancy, and of the liquids in tanks: rows force [N] and torque [N m] about
+  // the reference point; columns translation [m] and rotation [rad] about W axes through that point, which
+  // moves with the body. Not symmetric where the centre of buoyancy does not lie above or below it.
   Eigen::Matrix<double, 6, 6> stiffness = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
@@ -60,10 +60,10 @@ struct WettedArea {
   double error = 0.0;  // [m^2], bound on the error
 };
 
-// The area of the body's surface under water alone. mesh: with its tree. The bound comes from the areas
-// under slightly lower and higher water, since the area changes by much where a face is level with the
-// surface. Complexity: O(triangles that the water cuts + log n), three times; O(1) for a dry or fully
-// submerged body; no heap.
+// Returns the area of the body's surface under water. mesh: with its tree. The bound comes from the areas
+// under slightly lower and higher water, since the area jumps where a face is level with the surface.
+// Complexity: three times O(triangles that the water cuts + log n); O(1) for a dry or fully submerged body;
+// no heap.
 WettedArea wetted_area(const HydrostaticMesh& mesh, const Pose& pose, const Water& water);
 
 }  // namespace buoyancy

@@ -10,7 +10,7 @@
 namespace buoyancy {
 namespace {
 
-// second_moments_W: about the centroid; only its horizontal part counts.
+// second_moments_W: about the centroid. Only its horizontal part is used.
 void add_principal_moments(const Mat3& second_moments_W, const Vec3& up_W, Hydrostatics& result) {
   const Vec3 u = up_W.unitOrthogonal();
   const Vec3 v = up_W.cross(u);
@@ -39,8 +39,8 @@ void add_waterplane(const DisplacementMoments<double>& moments_W, const Vec3& po
   add_principal_moments(moments_W.moved(to_centroid_W).waterplane_second_moments, up_W, result);
 }
 
-// moments_W, point_W: as above. mass_to_point_W: from the centre of mass to point_W, if the former is known.
-// Requires a preceding call of add_waterplane().
+// moments_W: about point_W, which is relative to p_WB. mass_to_point_W: from the centre of mass, if it is
+// known, to point_W. Requires a preceding call of add_waterplane().
 void add_metacenters(const DisplacementMoments<double>& moments_W, const Vec3& point_W, const Vec3& up_W,
                      const std::optional<Vec3>& mass_to_point_W, Hydrostatics& result) {
   const Vec3 to_buoyancy_W = moments_W.moment / moments_W.volume;
@@ -55,7 +55,7 @@ void add_metacenters(const DisplacementMoments<double>& moments_W, const Vec3& p
   }
 }
 
-// What the free surfaces take from the metacentric heights. Requires a preceding call of add_metacenters().
+// Subtracts the free-surface effect from the metacentric heights, which stay NaN where they are unknown.
 void subtract_free_surface(const Mat3& free_surface_W, const Water& water, Hydrostatics& result) {
   const double displaced_mass = water.density * result.volume;
   if (result.waterplane_area > 0.0) {
@@ -65,7 +65,7 @@ void subtract_free_surface(const Mat3& free_surface_W, const Water& water, Hydro
     }
     return;
   }
-  // Without a waterplane the free surfaces alone tell the axes apart.
+  // Without a waterplane the free surfaces alone define the axes, in the order of ascending height.
   Hydrostatics of_surfaces;
   add_principal_moments(free_surface_W, water.up_W, of_surfaces);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -155,7 +155,7 @@ std::optional<Hydrostatics> hydrostatics_of(const ImmersedPart& part, const Vec3
   const Vec3 to_reference_W = R_WB * ((reference_B - origin_B) - part.point);
   result.stiffness = water.density * water.gravity * stiffness(moments_W.moved(to_reference_W), water.up_W);
   if (liquids.mass > 0.0) {
-    // A liquid pulls its tank down as displaced water pushes a hull up, at a level that keeps its volume.
+    // The liquid's weight is the negative of a displacement at a level that keeps the liquid's volume.
     DisplacementMoments<double> weight;
     weight.volume = liquids.mass;
     weight.moment = liquids.moment;

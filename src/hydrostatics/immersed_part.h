@@ -21,17 +21,17 @@ struct ImmersedPart {
 // hydrostatics().
 ImmersedPart immersed_part(const HydrostaticMesh& mesh, const WaterPlane& plane);
 
-// [m^2], its wetted_area alone.
+// [m^2], ImmersedPart::wetted_area alone.
 double wetted_area(const HydrostaticMesh& mesh, const WaterPlane& plane);
 
 // Adds the moments of a part of a body, times a factor, to a sum. offset_B: [m], from the sum's origin to the
-// part's. The wetted area counts for a factor above 0.
+// part's. The part's wetted area is added only if the factor is above 0.
 void add_scaled(const ImmersedPart& part, const Vec3& offset_B, double factor, ImmersedPart& sum);
 
-// What hydrostatics() returns. origin_B: [m], from which `part.point` is measured. volume_tolerance: [m^3],
-// below which a volume has no centre. center_of_mass_B: of all that the body weighs. liquids: in its tanks,
-// about the reference point: they take part in the stiffness and, with their free surfaces, in the
-// metacentric heights.
+// Computes what hydrostatics() returns from an immersed part. origin_B: [m], from which `part.point` is
+// measured. volume_tolerance: [m^3], below which a volume has no centre. center_of_mass_B: of the body with
+// its liquids. liquids: about the reference point; they contribute to the stiffness and, by their free
+// surfaces, to the metacentric heights.
 std::optional<Hydrostatics> hydrostatics_of(const ImmersedPart& part, const Vec3& origin_B,
                                             double volume_tolerance, const Eigen::Quaterniond& q_WB,
                                             const Water& water, const Vec3& reference_B,

@@ -16,10 +16,10 @@ enum class Immersion { kDry, kSubmerged, kPiercing };
 // Complexity: O(1).
 Immersion immersion(const HydrostaticMesh& mesh, const WaterPlane& plane);
 
-// The same before the plane is known, in plain double, at a tenth of the cost of computing the plane: bodies
-// that are clear of the surface cost a scene no more. Wherever this returns kDry or kSubmerged, immersion()
-// of the exact plane returns the same. Returns kPiercing for a pose that is not finite, and for a quaternion
-// whose norm is below 1e-50 or squares to infinity. Complexity: O(1).
+// Does the same in plain double before the plane is known, at a tenth of the cost of the plane, which bodies
+// clear of the surface then never need. Wherever this returns kDry or kSubmerged, immersion() of the exact
+// plane returns the same. Returns kPiercing for a pose that is not finite, and for a quaternion whose norm is
+// below 1e-50 or squares to infinity. Complexity: O(1).
 Immersion quick_immersion(const HydrostaticMesh& mesh, const Pose& pose, const Water& water);
 
 }  // namespace buoyancy

@@ -21,7 +21,7 @@ namespace HWY_NAMESPACE {
 using Reals = hn::CappedTag<double, 8>;
 using RealVector = hn::Vec<Reals>;
 
-// Numbers of a leaf's vertices, 64 B aligned, looked up by index.
+// One number for each of a leaf's vertices, looked up by the vertex's index.
 struct alignas(64) VertexTable {
   std::array<double, kLeafVertices> values;
 };
@@ -51,8 +51,8 @@ HWY_INLINE std::uint32_t present_triangles(const LeafPatch& leaf) {
   return (1U << leaf.triangles) - 1U;
 }
 
-// Sets the flag and returns the triangles that count whole. Branch-free, since the condition cannot be
-// predicted.
+// Sets subtract_from_leaf and returns the triangles that count whole. It has no branch, since the condition
+// cannot be predicted.
 HWY_INLINE std::uint32_t choose_whole(const LeafPatch& leaf, std::uint32_t mostly_wet, LeafWork& work) {
   work.subtract_from_leaf = 2 * __builtin_popcount(mostly_wet) > leaf.triangles;
   return mostly_wet ^ (present_triangles(leaf) & (0U - static_cast<std::uint32_t>(work.subtract_from_leaf)));
@@ -125,7 +125,7 @@ HWY_INLINE void find_work(const LeafPatch& leaf, std::uint32_t wet, LeafWork& wo
   const std::uint32_t present = present_triangles(leaf);
   const std::uint32_t cut = (a | b | c) & ~(a & b & c) & present;
   const std::uint32_t mostly_wet = ((a & b) | (c & (a | b))) & present;
-  // Corners b, c, a and c, a, b.
+  // These are the words of the corners in the orders b, c, a and c, a, b.
   const __m512i b_first = _mm512_or_si512(from_b, _mm512_slli_epi16(words, 10));
   const __m512i c_first = _mm512_or_si512(from_c, _mm512_slli_epi16(words, 5));
   const __m512i a_or_b = _mm512_mask_mov_epi16(words, static_cast<__mmask32>((a ^ b) & (b ^ c)), b_first);
@@ -209,7 +209,7 @@ HWY_INLINE void find_work(const LeafPatch& leaf, std::uint32_t wet, LeafWork& wo
     hn::StoreMaskBits(d, hn::MaskFromVec(mask), stored.data());
     return static_cast<std::uint32_t>(stored[0]);
   };
-  // A byte per corner.
+  // Spreads the three indices of five bits in each word over three bytes.
   const auto spread = [&](hn::Vec<decltype(half)> corners) {
     const auto wide = hn::PromoteTo(words, corners);
     return hn::Or(hn::And(wide, hn::Set(words, 0x1FU)),
@@ -267,8 +267,8 @@ HWY_INLINE CornerIndices corner_indices(const CornerWord* from) {
           index_of(_mm512_srli_epi64(corners, 10))};
 }
 
-// The whole table is in registers: two instructions do eight look-ups. They read only the lowest bits of an
-// index.
+// The whole table is in registers, and two instructions do eight look-ups. They read only the lowest bits of
+// an index.
 HWY_INLINE RealVector look_up(const VertexTable& table, const CornerIndex& at) {
   static_assert(kLeafVertices == 24);
   const __m512d low = _mm512_load_pd(table.values.data());

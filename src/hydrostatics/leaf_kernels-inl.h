@@ -25,7 +25,7 @@ class LeafBatch {
  public:
   static constexpr std::size_t kCapacity = 16;
 
-  // Numbers of one leaf's vertices: along b and c, about its centre [m], and over the water [m].
+  // One leaf's vertices: coordinates along b and c about its centre [m], and heights over the water [m].
   struct Vertices {
     VertexTable b, c, z;
   };
@@ -45,13 +45,13 @@ class LeafBatch {
 
   HWY_INLINE void clear() { size_ = 0; }
 
-  // At most kCapacity leaves between calls of clear(). Returns true if the leaf is fully submerged.
+  // Adds one of at most kCapacity leaves between calls of clear(). Returns true if it is fully submerged.
   template <typename Real>
   HWY_INLINE bool add(const TreeLeaf<Real>& leaf) {
     const double x = leaf.center[0];
     const double y = leaf.center[1];
     const double z = leaf.center[2];
-    // Exact: the terms are whole multiples of grid 2^-26, fewer than 2^53 of them (TreeQuery).
+    // z_high is exact: its terms are multiples of grid 2^-26, and fewer than 2^53 of them (TreeQuery).
     const double z_high = k_high_[0] * x + k_high_[1] * y + k_high_[2] * z + start_high_;
     const double z_low = k_low_[0] * x + k_low_[1] * y + k_low_[2] * z + start_low_;
     const std::uint32_t all = (1U << leaf.vertices) - 1U;
@@ -63,9 +63,9 @@ class LeafBatch {
     return fully_submerged;
   }
 
-  // Finds the triangles of cut leaf i, a Leaf, and writes its vertices' numbers along b and c. Returns true
-  // if the wet part is the sum of the leaf's moments, which the caller adds, and of the triangles to
-  // evaluate.
+  // Finds the triangles to evaluate in cut leaf i, whose type is Leaf, and writes its vertices' coordinates
+  // along b and c. Returns true if the wet part is the sum of those triangles and of the leaf's moments,
+  // which the caller adds.
   template <typename Leaf>
   HWY_INLINE bool prepare(std::size_t i) {
     const Reals d;
@@ -117,7 +117,7 @@ class LeafBatch {
   const std::array<double, 3>& k_;
   double start_high_, start_low_;         // [m], parts of the height of c
   std::array<double, 3> k_high_, k_low_;  // [m], parts of k times MomentTree::grid
-  // One element more than is kept: the next leaf overwrites one that is not cut.
+  // The arrays have a spare element, since the next leaf overwrites one that is not cut.
   std::array<Vertices, kCapacity + 1> vertices_;
   std::array<const LeafPatch*, kCapacity + 1> leaf_;
   std::array<std::uint32_t, kCapacity + 1> wet_;  // one bit per vertex
@@ -197,7 +197,7 @@ class LeafSums {
   HWY_INLINE void add_whole(const LeafWork& work, const LeafFrame& leaf) {
     const Reals d;
     const auto sign = hn::Set(d, work.subtract_from_leaf ? -1.0 : 1.0);
-    // At most half of a leaf, nearly always one vector of eight.
+    // These are at most half of a leaf, and nearly always one vector of eight.
     const std::size_t num_whole = at_least_one_of_eight(work.num_whole);
     for (std::size_t i = 0; i < num_whole; i += hn::Lanes(d)) {
       const CornerIndices at = corner_indices(work.whole.data() + i);
@@ -210,7 +210,7 @@ class LeafSums {
       const auto zp = look_up(leaf.z, at.p);
       const auto zq = look_up(leaf.z, at.q);
       const auto zr = look_up(leaf.z, at.r);
-      // 2 n_a dA from corner p, which is the leaf's a, opposite the longest edge; 0 in unused lanes.
+      // 2 n_a dA, by the edges from corner p; 0 in unused lanes.
       const auto w = hn::Mul(
           sign, difference_of_products(hn::Sub(bq, bp), hn::Sub(cr, cp), hn::Sub(br, bp), hn::Sub(cq, cp)));
       const auto z_sum = hn::Add(hn::Add(zp, zq), zr);
@@ -246,8 +246,8 @@ class LeafSums {
       // Height differences along the edges p-q and p-r, from which the parts of the edges on p's side follow.
       const auto z_pq = hn::Sub(zp, look_up(leaf.z, at.q));
       const auto z_pr = hn::Sub(zp, look_up(leaf.z, at.r));
-      // One division instead of two. The product is 0 in unused lanes, whose corners are all the same, and
-      // where heights of less than 1e-154 m underflow in it: such lanes add nothing and are not divided.
+      // This takes one division instead of two. The product is 0 in unused lanes, whose corners are all the
+      // same, and where heights below 1e-154 m underflow in it: such lanes add nothing and are not divided.
       const auto both = hn::Mul(z_pq, z_pr);
       const auto scale = hn::IfThenElseZero(hn::Ne(both, hn::Zero(d)), hn::Div(zp, both));
       const auto to_q = hn::Mul(scale, z_pr);

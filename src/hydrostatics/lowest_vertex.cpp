@@ -19,7 +19,7 @@ class LowestVertexSearch {
   double lowest() const { return lowest_; }
 
  private:
-  // The lowest children first, so that the others can be skipped.
+  // Visits the lowest children first, so that the others can be skipped.
   void visit(const TreeNode& node) {
     std::array<std::pair<double, std::uint32_t>, kTreeWidth> bounds;
     for (std::uint32_t i = 0; i < node.children; ++i) {

@@ -308,7 +308,7 @@ using TriangleBits = std::array<std::uint64_t, kGroupTriangles * Meshlets::kMaxG
 template <CutTriangles kCut, typename Elements>
 HWY_INLINE TriangleBits add_crossing(const CornerGroup* groups, std::size_t count, const VertexRows& rows,
                                      std::uint64_t wet, Elements& elements) {
-  // Which groups are dry cannot be predicted: they are sorted out before anything is computed.
+  // Which groups are dry cannot be predicted, so they are sorted out before anything is computed.
   std::array<std::uint8_t, Meshlets::kMaxGroups> with_wet_vertex;
   std::size_t num_with_wet_vertex = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -339,7 +339,7 @@ HWY_INLINE TriangleBits add_crossing(const CornerGroup* groups, std::size_t coun
   return cut_triangles;
 }
 
-// Triangles that the water cuts, of many meshlets, so that they are clipped in long runs.
+// Collects the triangles that the water cuts, from many meshlets, so that they are clipped in long runs.
 class CutBatch {
  public:
   // Copies the vertices of the chosen triangles, with the corner first that is alone on its side.
@@ -400,8 +400,8 @@ class CutBatch {
     return dot(edge, edge);
   }
 
-  // The point where the edge between a wet and a dry corner meets the water: from the wet one to the dry one,
-  // as in triangle_clip.h.
+  // Returns the point where the edge between a wet and a dry corner meets the water, interpolated from the
+  // wet corner to the dry one as in triangle_clip.h.
   HWY_INLINE static LaneVertex intersect_edge(LaneMask first_is_wet, const LaneVertex& first,
                                               const LaneVertex& second) {
     const LaneVertex wet = if_then_else(first_is_wet, first, second);

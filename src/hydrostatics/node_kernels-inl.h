@@ -182,7 +182,7 @@ HWY_INLINE FitErrors<D> fit_errors(D d, hn::Vec<D> below, hn::Vec<D> above, hn::
           hn::MulAdd(parabola, hn::MulAdd(hn::Set(d, 0.36F), depth, one), hn::Mul(line, lever))};
 }
 
-// In units of MomentTree::unit.
+// Returns the radii of some children in units of MomentTree::unit.
 template <class D>
 HWY_INLINE hn::Vec<D> radius(D d, const TreeNode& node, std::size_t first) {
   const auto x = load_short(d, node.half[0], first);
@@ -242,8 +242,8 @@ HWY_INLINE std::uint32_t leaf_bits(const std::uint32_t* children) {
   return leaves;
 }
 
-// Keeps those of the eight nodes from `from` on whose bit in the mask is set: moves them to nodes.size, which
-// is at most `from`.
+// Keeps those of the eight nodes from index `from` on whose bit in the mask is set, by moving them to
+// nodes.size, which is at most `from`.
 HWY_INLINE void keep_prunable(PrunableNodes& nodes, std::size_t from, std::uint32_t mask) {
   const std::size_t at = nodes.size;
   for (auto* const list : nodes.numbers()) append(list->data() + from, mask, list->data() + at);

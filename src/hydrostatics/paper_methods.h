@@ -1,6 +1,6 @@
 // The five methods of "Approximate and exact buoyancy calculation for real-time floating simulation of
-// meshes", section 4, as published: the baselines that `hierarchical` (hierarchical.h) is compared with. One
-// source file each.
+// meshes", section 4, as published. `hierarchical` (hierarchical.h) is compared with them. Each has a source
+// file of its own.
 //
 // Contract of all five: `meshlets` were made from the mesh's surface (build_meshlets()); mesh coordinates and
 // water plane are about the mesh's centre c (water_plane_in_body()); a triangle is fully submerged if its

@@ -4,7 +4,7 @@
 //   F/(rho g)   = int z n dA       = A n (z_a + z_b + z_c) / 3
 //   tau/(rho g) = int z y x n dA   = (sum z sum y + sum z_i y_i) A/12 x n
 //   H           = int z dV         = 1/2 int z^2 k . n dA   over the wetted surface
-// (the water surface, which closes it, contributes 0 since z = 0 there).
+// The water surface, which closes the wetted surface, contributes 0 since z = 0 there.
 // The paper takes centroid times force for the torque; pressure varies over the triangle, and on coarse
 // meshes that reverses the sign of the restoring moment, so the integral is taken instead.
 #pragma once

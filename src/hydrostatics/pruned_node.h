@@ -56,7 +56,7 @@ struct PrunableNodes {
   }
 };
 
-// The working memory of a descent within a budget, one per thread: a level holds every node at most once.
+// A thread's working memory for descents within a budget. Its lists have room for every node of a tree.
 struct BudgetLists {
   std::vector<std::uint32_t> inner, next_inner;  // nodes to expand
   PrunableNodes open;                            // their children that the water may cross

@@ -13,9 +13,9 @@
 //                       (hierarchical.h)
 // A triangle is fully submerged if its three vertices are below the water (z < 0).
 //
-// A Solver is immutable after construction: any number of threads may use it at once. A query allocates
-// nothing, except, within a tolerance, a thread's first on a tree larger than the thread has seen.
-// Complexity: O(vertices + triangles) per query.
+// A Solver is immutable after construction: any number of threads may use it at once. Queries allocate
+// nothing, but for a thread's first one with a tolerance on a tree larger than any before. Complexity per
+// query: O(vertices + triangles) with the paper's methods, that of hierarchical.h with `hierarchical`.
 #pragma once
 
 #include <array>
@@ -43,7 +43,7 @@ bool is_exact(Method method);  // true if exact to rounding in volume, force and
 class Solver {
  public:
   // mesh must outlive the solver. Precomputes only what the method needs: for the paper's methods the mesh's
-  // meshlets unless it has them, in O(n log n) for n triangles. tolerance: 0 (exact) or more,
+  // meshlets, unless it has them already, in O(n log n) for n triangles. tolerance: 0 (exact) or more,
   // relative to the whole displacement; only `hierarchical` uses it.
   Solver(const HydrostaticMesh& mesh, Method method, double tolerance = 0.0);
 
@@ -52,7 +52,7 @@ class Solver {
   // The water plane as the method needs it: exact or, where a tolerance allows it, in plain double, which
   // saves a tenth of a query.
   WaterPlane plane_in_body(const Pose& pose, const Water& water) const;
-  // Whether plane_in_body() is exact for every pose: equal to water_plane_in_body().
+  // True if plane_in_body() equals water_plane_in_body() for every pose.
   bool has_exact_planes() const { return plane_error_ == 0.0; }
 
   const HydrostaticMesh& mesh() const { return *mesh_; }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// The tank up to a level.
+// The part of a tank below a level.
 struct FilledTo {
   double level = 0.0;  // [m], of the plane over c
   Displacement below;
@@ -36,7 +36,7 @@ FilledTo find_level(const Tank& tank, const Vec3& up_B) {
   const double rounding = 4.0 * kEpsilon * mesh.volume;
 
   double level = low + (high - low) * (tank.liquid_volume / mesh.volume);
-  LevelSearch search(low, high, tank.liquid_volume / (level - low));  // as if the tank were a box
+  LevelSearch search(low, high, tank.liquid_volume / (level - low));  // the slope of a box
   FilledTo best;
   for (int round = 0;; ++round) {
     const FilledTo filled = fill_to(tank, up_B, level);

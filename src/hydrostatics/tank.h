@@ -1,9 +1,9 @@
 // The liquid in a tank: where it is, and how its free surface lies, at a given attitude.
 //
-// The surface is level, as in a tank that moves slowly: no sloshing, in waves neither. Its height follows
-// from the volume of the liquid, which no attitude changes: the part of the tank below a plane is what the
-// exact solver of a displaced volume computes (hierarchical.h). The liquid's energy has its minimum there, so
-// that its first moment is the derivative of that energy (docs/mathematics.md, "Compartments and tanks").
+// The surface is level, as in a tank that moves slowly: sloshing is not modelled, not even in waves. Its
+// height is where the part of the tank below it, which the exact solver of displaced volumes computes
+// (hierarchical.h), has the liquid's volume. The liquid's energy has its minimum there, so that its first
+// moment is the derivative of that energy (docs/mathematics.md, "Compartments and tanks").
 #pragma once
 
 #include <span>
@@ -26,17 +26,17 @@ struct TankLiquid {
   Vec3 centroid = Vec3::Zero();   // [m], of the liquid; 0 of an empty tank
   WaterPlane surface;             // the liquid's surface, about c; where has_free_surface
   bool has_free_surface = false;  // neither empty nor full
-  double volume = 0.0;            // [m^3], under the surface as found: the liquid's to 1e-14 of the mesh's
+  double volume = 0.0;            // [m^3], under `surface`: liquid_volume to 1e-14 of the mesh's volume
   double volume_error = 0.0;  // [m^3], bound on the error of `volume` and of its distance from the liquid's
 };
 
-// up_B: unit. A pure function: it starts from no earlier result. Complexity: some seven displaced volumes; no
-// heap.
+// Finds the liquid's surface at an attitude. up_B: unit. A pure function: it does not start from an earlier
+// result. Complexity: about seven displaced volumes; no heap.
 TankLiquid tank_liquid(const Tank& tank, const Vec3& up_B);
 
-// [m^4], about the centroid of the free surface, B axes: the integral of y y^T over it. Zero without one.
-// What the liquid takes from the stiffness is its density times g times these. Complexity: one query of
-// hydrostatics.
+// Returns the integral of y y^T over the free surface [m^4], about its centroid in B axes, or zero without a
+// free surface. It reduces the stiffness by its product with the liquid's density and g. Complexity: that of
+// hydrostatics().
 Mat3 free_surface_second_moments(const Tank& tank, const TankLiquid& liquid);
 
 // The liquids in the tanks of a body at an attitude, about a point of B.
@@ -48,10 +48,10 @@ struct LiquidSum {
 
 enum class FreeSurfaces { kNo, kYes };
 
-// Adds a tank, with its free surface if asked for. about_B: the point of the sum.
+// Adds the liquid of a tank, with its free surface if requested. about_B: [m], the point of the sum.
 void add_liquid(const Tank& tank, const TankLiquid& liquid, const Vec3& about_B, FreeSurfaces free_surfaces,
                 LiquidSum& sum);
-// Complexity: that of tank_liquid() per tank, and with free surfaces a query of hydrostatics more.
+// Complexity: per tank that of tank_liquid(), and with free surfaces also that of hydrostatics().
 LiquidSum liquid_sum(std::span<const Tank> tanks, const Vec3& up_B, const Vec3& about_B,
                      FreeSurfaces free_surfaces);
 

@@ -1,4 +1,4 @@
-// The water plane in the coordinates of a moment tree (MomentTree::scale), and as its descents take it.
+// Converts a water plane to the coordinates of a moment tree (MomentTree::scale) and to a TreeQuery.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace buoyancy {
 
-// plane: about the mesh's centre, in metres. The height of a point over the result is that over `plane`,
+// plane: about the mesh's centre, in metres. A point's height over the result is its height over `plane`,
 // divided by the tree's scale, to double-double accuracy. WaterPlane::error stays in metres.
 inline WaterPlane plane_of_tree(const MomentTree& tree, const WaterPlane& plane) {
   if (tree.scale == 1.0 && tree.offset.isZero(0.0)) return plane;
@@ -26,12 +26,12 @@ inline WaterPlane plane_of_tree(const MomentTree& tree, const WaterPlane& plane)
   return result;
 }
 
-// x rounded to a whole multiple of unit, a power of two.
+// Returns x rounded to a whole multiple of unit, a power of two.
 inline double whole_multiples(double x, double unit) {
   return std::nearbyint(x / unit) * unit;
 }
 
-// plane: of the tree. The result has no budget.
+// plane: in the coordinates of the tree. The caller sets budget and half_diagonal of the result.
 inline TreeQuery make_tree_query(const MomentTree& tree, const WaterPlane& plane) {
   constexpr double kUnit = 0x1p-26;
   const Vec3& k = plane.up_B;

@@ -1,4 +1,4 @@
-// Clips a triangle to its wet part: the definition of what is wet, for any number type. The SIMD kernels
+// Clips a triangle to its wet part. This code, for any number type, defines what is wet; the SIMD kernels
 // follow it.
 //
 // Rules: a vertex is wet where its signed height z < 0; a vertex on the plane is dry. A cut point has height
@@ -15,8 +15,8 @@
 
 namespace buoyancy {
 
-// Which corner of a triangle is alone on its side of the water, by a number whose lowest three bits tell
-// which of a, b and c are wet; 0 if none is. A table is faster than a branch, which cannot be predicted.
+// The corner of a triangle that is alone on its side of the water, or 0 if none is, indexed by three bits
+// that tell which of a, b and c are wet. A table is faster than a branch, which cannot be predicted.
 inline constexpr std::array<std::uint8_t, 8> kOddOneOut{0, 0, 1, 2, 2, 1, 0, 0};
 
 // A point of the surface about the mesh's centre, and its signed height over the water.
@@ -28,7 +28,7 @@ struct ClipVertex {
   bool wet() const { return z < T(0); }
 };
 
-// The point where the edge from a wet to a dry corner meets the water.
+// Returns the point where the edge from a wet to a dry corner meets the water.
 template <typename T>
 ClipVertex<T> intersect_edge(const ClipVertex<T>& wet, const ClipVertex<T>& dry) {
   const T share = wet.z / (wet.z - dry.z);

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <limits>
 
-// As in wetted_tree_sum.cpp.
+// As in wetted_tree_sum.cpp, the target without SIMD is Highway's scalar one.
 #define HWY_BROKEN_EMU128 1
 
 // This file is compiled once per instruction set; the name is how it includes itself.
@@ -41,7 +41,7 @@ namespace buoyancy {
 namespace HWY_NAMESPACE {
 namespace hydrostatics {
 
-// The other operations of double_double.h.
+// The operations of base/double_double.h that base/simd-inl.h does not have.
 template <typename V>
 HWY_INLINE DoubleDoubles<V> add(DoubleDoubles<V> a, DoubleDoubles<V> b) {
   const DoubleDoubles<V> hi = two_sum(a.hi, b.hi);
@@ -82,7 +82,7 @@ HWY_INLINE DoubleDoubles<V> reciprocal(DoubleDoubles<V> a) {
   return quick_two_sum(first, hn::Mul(rest, first));
 }
 
-// The sum of three numbers with an error relative to the largest of them: T. Ogita, S. M. Rump and S. Oishi,
+// Returns the sum of three numbers, with an error relative to the largest: T. Ogita, S. M. Rump and S. Oishi,
 // "Accurate sum and dot product", SIAM Journal on Scientific Computing 26 (2005).
 template <typename V>
 HWY_INLINE DoubleDoubles<V> sum(DoubleDoubles<V> a, DoubleDoubles<V> b, DoubleDoubles<V> c) {
@@ -188,7 +188,7 @@ HWY_EXPORT(compute_planes);
 
 constexpr std::size_t kMinBodies = 3;  // fewer are quicker one by one
 
-// Returns the quaternion, scaled by a power of two so that no square of a component that matters over- or
+// Returns the quaternion, scaled by a power of two such that no significant square of a component over- or
 // underflows. Such a scale changes no bit of a rotation.
 Eigen::Quaterniond within_range(const Eigen::Quaterniond& q) {
   const double largest = q.coeffs().cwiseAbs().maxCoeff();

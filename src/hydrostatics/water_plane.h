@@ -34,7 +34,7 @@ struct WaterPlane {
   // `hierarchical` uses them.
   Vec3 up_B_rest = Vec3::Zero();
   double h_c_rest = 0.0;  // [m]
-  // [m], bound on the error of every height over the body, besides its own rounding.
+  // [m], bound on the error of the plane's heights over the body, without the rounding of height() itself.
   double error = 0.0;
 
   double height(const Vec3& y) const { return up_B.dot(y) - h_c; }
@@ -43,8 +43,8 @@ struct WaterPlane {
 // h_c is NaN where a coordinate of the position or of c is 2^996 m (7e299 m) or more.
 WaterPlane water_plane_in_body(const Pose& pose, const Water& water, const Vec3& c_B);
 
-// Sets planes[i] to water_plane_in_body(poses[i], water, centers_B[i]), the same bits in a fraction of the
-// time. All spans have the same size. No heap allocation.
+// Sets planes[i] to water_plane_in_body(poses[i], water, centers_B[i]), with the same bits but in a fraction
+// of the time. All spans have the same size. No heap allocation.
 void water_planes_in_body(std::span<const Pose> poses, const Water& water, std::span<const Vec3> centers_B,
                           std::span<WaterPlane> planes);
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-// See wetted_tree_sum.cpp.
+// wetted_tree_sum.cpp explains these definitions.
 #define HWY_BROKEN_EMU128 1
 #define HWY_WANT_AVX3_DL 1
 #undef HWY_TARGET_INCLUDE
@@ -50,8 +50,8 @@ class EdgeSums {
       const auto zp = look_up(leaf.z, at.p);
       const auto z_pq = hn::Sub(zp, look_up(leaf.z, at.q));
       const auto z_pr = hn::Sub(zp, look_up(leaf.z, at.r));
-      // Unused lanes have the same corner three times. The difference of two heights of which one is
-      // negative is not zero.
+      // Unused lanes have the same corner three times. In used ones the heights differ, since one of them is
+      // negative and the other is not.
       const auto is_used = hn::Ne(z_pq, zero);
       const auto to_q = hn::IfThenElseZero(is_used, hn::Div(zp, z_pq));
       const auto to_r = hn::IfThenElseZero(is_used, hn::Div(zp, z_pr));
@@ -121,7 +121,7 @@ class WaterlineDescent {
         sums_(u, v) {}
 
   HWY_INLINE void run(WaterlineSum& sum) {
-    // Each node that is taken leaves at most kTreeWidth.
+    // A node taken from the stack is replaced by at most kTreeWidth children, one level deeper.
     std::array<std::uint32_t, kMaxTreeLevels * kTreeWidth> stack;
     std::size_t depth = 1;
     stack[0] = 0;

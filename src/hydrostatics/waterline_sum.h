@@ -1,4 +1,4 @@
-// The loops over the waterline that run per node and per leaf of the moment tree: as wetted_tree_sum.h, an
+// The loops over the waterline that run per node and per leaf of the moment tree: like wetted_tree_sum.h, an
 // interface of plain types to a SIMD implementation.
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace buoyancy {
 
-// A coordinate of a point of the water plane from its coordinates along b and c (TreeQuery::axes), in the
-// tree's unit of length: start + b y_b + c y_c. [m]
+// Gives a coordinate [m] of a point of the water plane, start + b y_b + c y_c, from the point's coordinates
+// y_b, y_c along b and c (TreeQuery::axes) in the tree's unit of length.
 struct PlaneCoordinate {
   double b = 0.0;
   double c = 0.0;

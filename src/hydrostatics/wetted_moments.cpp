@@ -15,7 +15,7 @@
 namespace buoyancy {
 namespace {
 
-// What is summed over the wetted surface: all moments and the area, or the area alone.
+// The descent sums one of these over the wetted surface: all moments and the area, or the area alone.
 struct MomentPatch {
   SurfaceMoments<double> moments;
   double area = 0.0;
@@ -75,7 +75,7 @@ class WettedSurfaceWalk {
     }
   }
 
-  // Height of a leaf's centre, rounded once.
+  // Returns the height of a leaf's centre, rounded once.
   double exact_height(const Vec3& center) const {
     DoubleDouble sum{-plane_.h_c, -plane_.h_c_rest};
     for (int i = 0; i < 3; ++i) sum = sum + DoubleDouble{plane_.up_B[i], plane_.up_B_rest[i]} * center[i];
@@ -128,8 +128,8 @@ class WettedSurfaceWalk {
     }
   }
 
-  // The part at the corner that is alone on its side is that share of the area which the water cuts off both
-  // of its edges.
+  // The part at the corner that is alone on its side has the triangle's area times the fractions of the two
+  // edges at that corner that lie on its side.
   template <typename Real>
   void clip_area(const TreeLeaf<Real>& leaf, const LeafHeights& heights) {
     for (std::size_t t = 0; t < leaf.triangles; ++t) {

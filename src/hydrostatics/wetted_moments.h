@@ -2,8 +2,8 @@
 // submerged node adds its moments, a dry node adds nothing, and the triangles of the leaves that cross the
 // water are clipped one by one.
 //
-// `hierarchical` sums only what force and torque need, many triangles at a time; this is the plain sum of all
-// 30 moments and of the area, which hydrostatics needs. Clipped triangles are summed about a point of the
+// `hierarchical` sums only what force and torque need, many triangles at a time; hydrostatics needs all 30
+// moments and the area, which are summed plainly here. Clipped triangles are summed about a point of the
 // wetted surface itself, and heights are relative to a leaf's centre, whose own height is rounded once: a
 // body that barely touches the water keeps its digits.
 #pragma once

@@ -10,7 +10,7 @@
 
 #include "geometry/pairwise_sum.h"
 
-// As in wetted_tree_sum.cpp: without SIMD, the target is Highway's scalar one.
+// As in wetted_tree_sum.cpp, the target without SIMD is Highway's scalar one.
 #define HWY_BROKEN_EMU128 1
 
 // This file is compiled once per instruction set; the name is how it includes itself.
@@ -75,7 +75,7 @@ void sum_pressures(const Meshlets& meshlets, const WaterPlane& plane, CutTriangl
             : sum_elements<CutTriangles::kBound>(meshlets, plane, PressureLanes(plane.up_B));
 }
 
-// Sums of table elements: each component of an element in a lane of its own, in four interleaved sums.
+// Sums table elements, with each component of an element in a lane of its own, in four interleaved sums.
 class TableLanes {
  public:
   HWY_INLINE TableLanes() { clear(); }

@@ -67,10 +67,10 @@ struct TableSum {
 TableSum sum_table(const Meshlets& meshlets, const WaterPlane& plane,
                    const std::vector<TableElement>& elements);
 
-// [m^3], what `exact` and `exact_surface` publish in addition to the mesh's rounding_bound(): 0 where
-// meets_volume_tolerance(), else eps L sum (longest edge)^2 over the triangles that are cut. The area of what
-// is left of one may be a product of two such edges, with an error of 1.5 eps of it; the bound takes a sixth
-// of that, for each of two triangles, times a distance from the apex of at most 2 L.
+// Returns what `exact` and `exact_surface` publish in addition to the mesh's rounding_bound() [m^3]: 0 where
+// meets_volume_tolerance(), else eps L sum (longest edge)^2 over the cut triangles. The area of a clipped
+// part may be a product of two such edges, with an error of 1.5 eps of it; a sixth of that, for each of two
+// triangles, times a distance from the apex of at most 2 L, gives this bound.
 double rounding_of_cut_faces(const HydrostaticMesh& mesh, double cut_edges_squared);
 
 }  // namespace buoyancy

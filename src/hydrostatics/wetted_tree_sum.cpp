@@ -11,7 +11,7 @@
 // The reference without SIMD is Highway's scalar target with every compiler; by default some compilers use
 // its emulation of two lanes instead.
 #define HWY_BROKEN_EMU128 1
-// AVX-512 in two stages: later processors compress 16-bit words in one instruction.
+// AVX-512 is compiled in two stages: later processors compress 16-bit words in one instruction.
 #define HWY_WANT_AVX3_DL 1
 
 // This file is compiled once per instruction set; the name is how it includes itself.
@@ -69,7 +69,7 @@ class Descent {
     visited();
   }
 
-  // The mask names some of eight elements of PrunableNodes::child: queues the leaves among them, writes the
+  // The mask selects some of eight elements of PrunableNodes::child. Queues the leaves among them, writes the
   // others to `inner` and returns the number of the latter.
   HWY_INLINE std::size_t add_open(const std::uint32_t* children, std::uint32_t mask, std::uint32_t* inner) {
     const std::uint32_t leaves = mask & leaf_bits(children);
@@ -106,7 +106,7 @@ class Descent {
     drain_if_full();
   }
 
-  // Must be called after every eight children added.
+  // Must be called whenever up to eight children were added.
   HWY_INLINE void drain_if_full() {
     if (num_leaves_ >= kQueue || num_wet_ >= kQueue) drain();
   }
@@ -166,8 +166,8 @@ class Descent {
   std::array<std::uint32_t, kQueue + 2 * LeafBatch::kCapacity + kTreeWidth> wet_queue_;
 };
 
-// Expands every node that the water crosses, below the given ones, which are at most kTreeWidth: a level of
-// the tree after the other if levels are small, and otherwise depth first, many nodes at a time. A node is
+// Expands every node that the water crosses below the given ones, of which there are at most kTreeWidth:
+// level by level while levels are small, and otherwise depth first, many nodes at a time. A node is
 // prefetched when it is found, so that its memory arrives while others are expanded.
 HWY_INLINE void descend_exactly(const MomentTree& tree, const std::uint32_t* nodes, std::size_t count,
                                 Descent& descent) {
@@ -220,8 +220,8 @@ HWY_INLINE double keep_within(float limit, PrunableNodes& open, std::uint32_t* i
 
 // Descends level by level: as soon as the total error of the open nodes fits into the remaining budget, all
 // of them are pruned. Until then some are pruned (limit_to_errors) and the others are expanded. A level is
-// examined for nodes to prune only if that may succeed: from a level to the next the total error falls about
-// eightfold.
+// examined for nodes to prune only if that may succeed: the total error falls about eightfold from a level to
+// the next.
 void sum_within_budget(const MomentTree& tree, const TreeQuery& query, BudgetLists& lists,
                        WettedTreeSum& sum) {
   constexpr double kErrorDecay = 8.0;     // total error of a level over that of the next
