@@ -24,12 +24,12 @@ double norm(const Pair& v) {
 struct Step {
   Pair along{};            // [rad]
   double decrease = 0.0;   // [kg m], of the quadratic model
-  bool is_newton = false;  // does it reach the minimum of the model?
-  bool is_tied = false;    // is its mirror image as good: does the gradient not choose a side?
+  bool is_newton = false;  // true if it reaches the minimum of the model
+  bool is_tied = false;    // true if the gradient prefers neither it nor its mirror image
 };
 
-// The shift of the curvatures at which the step is as long as the radius, to 1 %: Newton's method on the
-// reciprocal of the length, which is nearly linear, within bounds.
+// Returns the shift of the curvatures at which the step is as long as the radius, to 1 %, by Newton's method
+// within bounds on the reciprocal of the length, which is nearly linear.
 double shift_to(const Pair& g, const Pair& values, double radius) {
   constexpr int kMaxRounds = 40;
   constexpr double kAccuracy = 0.01;
@@ -83,8 +83,8 @@ Vec3 tangent(const Pair& along, const EnergyCurvature& curvature) {
   return along[0] * curvature.directions_B[0] + along[1] * curvature.directions_B[1];
 }
 
-// [m^3], by how much the volume may be off after a step. What that changes must not hide what the step gains,
-// and less and less so at the end, where steps shrink quadratically.
+// Returns the allowed error of the displaced volume after a step [m^3]. Its effect on the energy stays far
+// below the decrease by the step, and ever farther near the end, where steps shrink quadratically.
 double slack_for(const Balance& balance, double decrease, double length, double area) {
   constexpr double kAboveRounding = 1e3;
   constexpr double kShare = 0.01;
@@ -92,16 +92,16 @@ double slack_for(const Balance& balance, double decrease, double length, double 
   return balance.slack(kShare * length * decrease, area);
 }
 
-// [kg m], by how much the energy falls on the great circle along a tangent step: the trapezoidal sum of the
-// gradient. Where rounding hides the difference of the energies, it does not hide this one.
+// Returns the decrease of the energy along the great circle of a tangent step [kg m], by the trapezoidal rule
+// on the gradient, which resolves decreases that rounding hides in a difference of energies.
 double fall_along(const BalancedAttitude& from, const BalancedAttitude& to, const Vec3& step) {
   const double length = step.norm();
   const Vec3 arrival = std::cos(length) * step - length * std::sin(length) * from.up_B;
   return -0.5 * (from.gradient.dot(step) + to.gradient.dot(arrival));
 }
 
-// A tangent step, that leads back to the bottom of a valley. A valley of nearly equal energy may be curved: a
-// step along its tangent then climbs its side. curvature: of an attitude nearby, with values[1] > 0.
+// Returns a tangent step back to the bottom of a valley. A valley of nearly equal energy may be curved, and a
+// step along its tangent climbs its side. curvature: of an attitude nearby, with values[1] > 0.
 Vec3 step_to_bottom(const BalancedAttitude& at, const EnergyCurvature& curvature) {
   const Vec3& side = curvature.directions_B[1];
   const Vec3 across = (side - side.dot(at.up_B) * at.up_B).normalized();
@@ -167,7 +167,7 @@ std::optional<Minimum> AttitudeDescent::minimum_from(const BalancedAttitude& sta
       radius = 0.25 * length;
     }
     if (!accepted && !at.is_exact && ++rejections > kMaxRejections) {
-      // What the attitude is off by may hide that energy falls.
+      // The error of the attitude's displacement may hide a decrease of the energy.
       const std::optional<BalancedAttitude> exact = balance_->at(at.up_B, &at);
       if (!exact) return std::nullopt;
       at = *exact;

@@ -22,20 +22,20 @@ class AttitudeDescent {
  public:
   explicit AttitudeDescent(const Balance& balance) : balance_(&balance) {}
 
-  // Descends by a trust region over two angles, with the exact gradient and Hessian; a step is accepted only
-  // if the energy falls. Where rounding hides the fall, it is that of the gradient along the step, and a step
-  // that climbs the side of a curved valley is led back to its bottom. On the way the body displaces its mass
-  // only as nearly as the step needs; at the end, to rounding. Ends where the gradient is zero to rounding
-  // and no curvature is negative. Saddle points are left along their negative curvature; the other side of
-  // each is added to further_starts(). Returns nullopt at a known minimum, where an open mesh takes in water
-  // along the way, and where nothing is found within 200 steps.
+  // Descends by a trust region over two angles, with the exact gradient and Hessian, and accepts a step only
+  // if the energy falls. Where rounding hides the fall, it is taken from the gradient along the step, and a
+  // step that climbs the side of a curved valley is led back to its bottom. On the way the body displaces its
+  // mass only as accurately as the step needs; at the end, to rounding. The descent ends where the gradient
+  // is zero to rounding and no curvature is negative. It leaves saddle points along their negative curvature
+  // and keeps the other side of each for take_further_starts(). Returns nullopt at a known minimum, where an
+  // open mesh takes in water on the way, and where nothing is found within 200 steps.
   std::optional<Minimum> minimum_from(const BalancedAttitude& start, const IsKnown& is_known);
 
-  // The stationary point of any kind that Newton's method on the gradient finds from a start: a step is
-  // accepted only if the gradient shrinks. nullopt: none.
+  // Returns the stationary point of any kind that Newton's method on the gradient finds from a start, or
+  // nullopt. A step is accepted only if the gradient shrinks.
   std::optional<Minimum> stationary_from(const BalancedAttitude& start) const;
 
-  // Starts on the other sides of saddle points and ridges; cleared by the call.
+  // Returns and clears the starts on the other sides of saddle points and ridges.
   std::vector<Vec3> take_further_starts();
 
  private:

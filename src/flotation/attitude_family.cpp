@@ -7,7 +7,7 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kEnergyError = 0.01;  // of the difference of energies that counts as flat
+constexpr double kEnergyError = 0.01;  // relative to the difference of energies that counts as flat
 
 // Moves an attitude across its path to the bottom of the valley, by one Newton step on the gradient.
 std::optional<BalancedAttitude> at_bottom(const Balance& balance, BalancedAttitude& at, const Vec3& direction,
@@ -20,7 +20,7 @@ std::optional<BalancedAttitude> at_bottom(const Balance& balance, BalancedAttitu
   return balance.at(turned(at.up_B, step * across), &at, balance.slack(energy_error, at.area));
 }
 
-// The tangent at `to` of the great circle that comes from `from`.
+// Returns the tangent at `to` of the great circle that comes from `from`.
 Vec3 direction_at(const Vec3& from, const Vec3& to) {
   return (from.dot(to) * to - from).normalized();
 }

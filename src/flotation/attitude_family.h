@@ -7,17 +7,17 @@
 
 namespace buoyancy {
 
-// [kg m], by how much energies of one family may differ.
+// Returns the largest difference of energies within one family [kg m].
 double flat_energy(const Balance& balance, double relative);
 
-// Attitudes in steps of kFamilyStep along the direction of least curvature, each at the bottom of the valley
-// that it follows: through the whole curve until it closes, or all around. Empty where the energy rises, or
-// falls, by more than `flat` within one radian.
+// Returns attitudes in steps of kFamilyStep along the direction of least curvature, each at the bottom of the
+// valley, until the curve closes, a turn is complete, or the energy changes by more than `flat`. Returns none
+// where it does so within one radian.
 std::vector<Vec3> flat_curve(const Balance& balance, const Minimum& minimum, double flat);
 
 inline constexpr double kFamilyStep = 0.1;  // [rad]
 
-// Is the energy flat in the direction of larger curvature too, for one radian along both ways?
+// True if the energy is flat up to 1.5 rad both ways along both principal directions.
 bool is_flat_everywhere(const Balance& balance, const Minimum& minimum, double flat);
 
 }  // namespace buoyancy

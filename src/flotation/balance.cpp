@@ -25,7 +25,7 @@ Balance::Balance(const FloatingBody& body, const Water& water)
   double area = 0.0;
   for (const FloatingBody::SignedVolume& volume : body.volumes()) area += volume.placed.mesh->area;
   gradient_rounding_ = (water.density * body.volume_tolerance() + body.liquid_tolerance()) * lever;
-  // Rounding of a volume and of a mass, each at its lever.
+  // The rounding errors of a volume and of a mass both act at the lever.
   energy_rounding_ = gradient_rounding_ + 8.0 * kEpsilon * body.total_mass() * lever;
   curvature_rounding_ = 64.0 * kEpsilon * water.density * (area * lever * lever + body.volume() * lever);
   for (const Tank& tank : body.tanks()) {
@@ -71,7 +71,7 @@ std::optional<BalancedAttitude> Balance::at(const Vec3& up_B, const BalancedAtti
   }
 
   const double tolerance = 0.125 * body_->volume_tolerance();
-  // The secant method on the cube root of the volume under water, or of that over it if it is smaller: at a
+  // The secant method works on the cube root of the volume under water, or over it if that is smaller: at a
   // tip the volume grows with the cube of its height.
   const double total = body_->volume();
   const bool is_mostly_wet = !body_->is_open() && target_volume_ > 0.5 * total;
@@ -83,7 +83,7 @@ std::optional<BalancedAttitude> Balance::at(const Vec3& up_B, const BalancedAtti
   double height = 0.5 * (range.low + range.high);
   double area = 0.0;
   if (!body_->is_open()) {
-    // As if a sphere filled the range.
+    // The first height is that of a sphere that fills the range.
     const double fraction = std::clamp(target_volume_ / total, 0.0, 1.0);
     const double depth = 0.5 - std::sin(std::asin(1.0 - 2.0 * fraction) / 3.0);
     height = range.high - depth * (range.high - range.low);
@@ -123,7 +123,7 @@ std::optional<BalancedAttitude> Balance::at(const Vec3& up_B, const BalancedAtti
 void Balance::settle(BalancedAttitude& attitude, double area, const Vec3& pivot) const {
   constexpr double kMaxRise = 0.05;
   const double rise = attitude.excess / area;
-  // At the neck of a body the waterplane is no guide to the volume beside it.
+  // Where the body is narrow, the waterplane does not predict the volume above and below it.
   if (attitude.excess == 0.0 || !(std::abs(rise) <= kMaxRise * std::cbrt(body_->volume()))) return;
   const Vec3& k = attitude.up_B;
   const double mass = water_->density * attitude.excess;

@@ -1,10 +1,10 @@
-// The energy of a floating body over the attitudes, with the height eliminated: at every attitude the body
-// displaces its mass (docs/mathematics.md, "Equilibrium and righting arms").
+// The energy of a floating body as a function of its attitude alone: at every attitude the body has the
+// height at which it displaces its mass (docs/mathematics.md, "Equilibrium and righting arms").
 //
-// Energies are divided by g: [kg m]. o is the body's center_B and z its height over the water, k the world's
-// up in B, Q = m (G - o) - rho M_o: the energy is k . Q + z (m - rho V), its gradient in k is Q, and where
-// m = rho V its Hessian over the sphere of k is rho J_F - (k . Q) I, with J_F the second moments of the
-// waterplane about its centroid.
+// Energies are divided by g and given in kg m. With o the body's center_B, z its height over the water, k the
+// world's up in B and Q = m (G - o) - rho M_o, the energy is k . Q + z (m - rho V), its gradient in k is Q,
+// and where m = rho V its Hessian over the sphere of k is rho J_F - (k . Q) I, with J_F the second moments of
+// the waterplane about its centroid.
 #pragma once
 
 #include <array>
@@ -20,10 +20,10 @@ struct BalancedAttitude {
   double height = 0.0;               // [m], z
   double energy = 0.0;               // [kg m]
   Vec3 lever_moment = Vec3::Zero();  // [kg m], Q
-  Vec3 gradient = Vec3::Zero();      // [kg m], Q without its part along k: the torque over g, turned by k
-  bool is_exact = true;              // does it displace its mass to rounding?
-  double excess = 0.0;               // [m^3], displaced too much, what above is not corrected for; else 0
-  double area = 0.0;                 // [m^2], of the waterplane, roughly; 0: not known
+  Vec3 gradient = Vec3::Zero();      // [kg m], Q without its part along k: torque / g x k
+  bool is_exact = true;              // true if it displaces its mass to rounding
+  double excess = 0.0;               // [m^3], excess displacement that the values above do not account for
+  double area = 0.0;                 // [m^2], rough area of the waterplane; 0: not known
   // [m], B axes, from o: a point of the waterplane about which a small turn keeps the displacement.
   Vec3 pivot = Vec3::Zero();
 
@@ -37,7 +37,7 @@ struct EnergyCurvature {
                                    Vec3::UnitY()};  // unit, at right angles to k and each other
   double largest_moment = 0.0;                      // [kg m], rho times the larger second moment
 
-  // [kg m], of the energy along a unit vector across k.
+  // [kg m], curvature of the energy along a unit vector perpendicular to k.
   double along(const Vec3& direction_B) const {
     const double first = direction_B.dot(directions_B[0]);
     const double second = direction_B.dot(directions_B[1]);
@@ -49,11 +49,11 @@ class Balance {
  public:
   Balance(const FloatingBody& body, const Water& water);
 
-  // The height at which the body displaces its mass. guess: an attitude nearby, or nullptr. slack: [m^3], by
-  // how much the volume may be off; the height and the moments are corrected for it to first order, the
-  // energy to second, with the waterplane of the guess, or else by curvature(). Returns nullopt where there
-  // is no such height: the body is too heavy, or an open mesh takes in water first. Complexity: some two
-  // displacements with a guess and a slack, three to six without.
+  // Finds the height at which the body displaces its mass. guess: an attitude nearby, or nullptr. slack:
+  // [m^3], the allowed error of the volume. Height and moments are corrected for this error to first order,
+  // the energy to second, with the waterplane of the guess, or else later by curvature(). Returns nullopt
+  // where there is no such height: the body is too heavy, or an open mesh takes in water first. Complexity:
+  // about two displacements with a guess and a slack, three to six without.
   std::optional<BalancedAttitude> at(const Vec3& up_B, const BalancedAttitude* guess = nullptr,
                                      double slack = 0.0) const;
   // [m^3], the slack that changes the energy by `energy` [kg m]. area: [m^2], of the waterplane.
@@ -72,7 +72,7 @@ class Balance {
 
  private:
   BalancedAttitude balanced(const Vec3& up_B, double height, const DisplacedSum& displaced) const;
-  // Raises an attitude by what its excess is over the waterplane, unless that is far.
+  // Corrects an attitude for its excess by raising it by excess / area, unless that is far.
   void settle(BalancedAttitude& attitude, double area, const Vec3& pivot) const;
 
   const FloatingBody* body_;
@@ -83,7 +83,7 @@ class Balance {
   double curvature_rounding_;
 };
 
-// The attitude reached by turning k by |step| towards a tangent step. [rad]
+// Returns the attitude reached by turning k by |step| [rad] towards a tangent step.
 Vec3 turned(const Vec3& up_B, const Vec3& step);
 
 }  // namespace buoyancy

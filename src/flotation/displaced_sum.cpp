@@ -11,7 +11,7 @@ namespace {
 
 using SignedVolume = FloatingBody::SignedVolume;
 
-// The plane in the mesh's frame, about the mesh's centre.
+// Returns the plane in the mesh's frame, about the mesh's centre.
 WaterPlane plane_of(const SignedVolume& volume, const WaterPlane& plane) {
   if (!volume.is_turned && volume.offset_B.isZero(0.0)) return plane;
   WaterPlane moved;
@@ -84,7 +84,7 @@ Vec3 total_center_of_mass_B(const FloatingBody& body, const LiquidSum& liquids) 
 }
 
 double liquid_moment_bound(const FloatingBody& body, const Vec3& point_B) {
-  // A level is found to a part of the rounding of the volume under it.
+  // The error of the level adds at most as much as the rounding of the volume under it.
   constexpr double kWithLevel = 2.0;
   double bound = 0.0;
   for (const Tank& tank : body.tanks()) {

@@ -18,30 +18,30 @@ DisplacedSum displaced_sum(const FloatingBody& body, const WaterPlane& plane);
 
 struct DisplacedBounds {
   double volume = 0.0;  // [m^3], bound on the error of the volume
-  double moment = 0.0;  // [m^4], of the moment about the centre of mass, across the vertical
+  double moment = 0.0;  // [m^4], of the moment's horizontal part, about the centre of mass
 };
 DisplacedBounds displaced_bounds(const FloatingBody& body, const WaterPlane& plane);
 
 // The part's point is relative to the body's center_B.
 ImmersedPart immersed_sum(const FloatingBody& body, const WaterPlane& plane);
 
-// [m^2], of the meshes of factor 1, without the waterplane.
+// [m^2], of the meshes that displace water, without the waterplane.
 double wetted_area_sum(const FloatingBody& body, const WaterPlane& plane);
 
-// The liquids in the tanks, about the body's center_B; with their free surfaces if asked for. Complexity:
+// Sums the liquids in the tanks about the body's center_B, with their free surfaces if requested. Complexity:
 // that of tank_liquid() per tank.
 LiquidSum liquid_sum(const FloatingBody& body, const Vec3& up_B, FreeSurfaces free_surfaces);
 
-// [kg m], of the body and these liquids, about the body's center_B.
+// [kg m], first moment of the masses of the body and these liquids about the body's center_B.
 Vec3 mass_moment(const FloatingBody& body, const LiquidSum& liquids);
-// [m], the centre of mass of both, in B.
+// [m], the centre of mass of the body and these liquids, in B.
 Vec3 total_center_of_mass_B(const FloatingBody& body, const LiquidSum& liquids);
 
 // [kg m], bound on the error of the liquids' moment about a point.
 double liquid_moment_bound(const FloatingBody& body, const Vec3& point_B);
 
-// The waterplane in the axes u, v = up x u of the plane, about the body's center_B. Its extent is that of the
-// meshes of factor 1. u: unit, horizontal, B axes. Errors: see waterline().
+// Sums the waterplane in the axes u and v = up x u of the plane, about the body's center_B. Its extent is
+// that of the meshes that displace water. u: unit, horizontal, B axes. Errors: see waterline().
 Waterline waterline_sum(const FloatingBody& body, const WaterPlane& plane, const Vec3& u);
 
 bool is_boundary_wet(const FloatingBody& body, const WaterPlane& plane);

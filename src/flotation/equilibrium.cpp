@@ -47,7 +47,7 @@ class EquilibriumSearch {
       descend(axis);
       descend(-axis);
     }
-    // The more attitudes are known, the smaller is what leads to one that is not.
+    // The more attitudes are known, the fewer starts lead to one that is not, and the more are needed.
     const auto enough = [&](int starts) { return 16 + static_cast<int>(4 * found_.size()) <= starts; };
     int last_news = 0;
     for (int n = 0; n < kMaxStarts && (n < kMinStarts || !enough(n - last_news)); ++n) {
@@ -60,7 +60,7 @@ class EquilibriumSearch {
     }
   }
 
-  // Saddle points and maxima, once the minima are known. On a sphere, minima - saddle points + maxima = 2 if
+  // Finds saddle points and maxima, after find_minima(). On a sphere, minima - saddle points + maxima = 2 if
   // none is missing.
   void find_unstable() {
     constexpr int kMinStarts = 24;
@@ -80,7 +80,7 @@ class EquilibriumSearch {
     }
   }
 
-  // Follows the energy down from a start. Returns whether that led to a minimum that was not known.
+  // Descends from a start. Returns true if that led to a minimum that was not known.
   bool descend(const Vec3& start_B) {
     constexpr int kMaxFurther = 4;
     bool is_new = descend_once(start_B);
@@ -134,8 +134,8 @@ class EquilibriumSearch {
     return sum;
   }
 
-  // Does the descent end at a known minimum? step: [rad], to the minimum of the model; negative: there is
-  // none.
+  // True if the descent will end at a known minimum. step: [rad], to the minimum of the model; negative:
+  // there is none.
   bool approaches_known(const BalancedAttitude& at, const Vec3& target, double step) const {
     for (const Found& found : found_) {
       const double distance = (found.minimum.attitude.up_B - target).norm();
@@ -145,7 +145,7 @@ class EquilibriumSearch {
     return belongs_to_family(at);
   }
 
-  // Are energy and gradient those of the quadratic model at a minimum? Between two minima they are not.
+  // True if energy and gradient agree with the quadratic model at a minimum, as between two they do not.
   static bool is_in_bowl_of(const Minimum& minimum, const BalancedAttitude& at) {
     constexpr double kMaxDistance = 0.5;  // [rad]
     constexpr double kAgreement = 0.2;
@@ -179,7 +179,7 @@ class EquilibriumSearch {
     });
   }
 
-  // An attitude around a stationary one at which the energy is lower, if there is one.
+  // Returns the lowest attitude on a small circle around a stationary one, if its energy is lower.
   std::optional<BalancedAttitude> lower_nearby(const Minimum& minimum) const {
     constexpr int kDirections = 8;
     constexpr double kRadius = 1e-3;  // [rad]
@@ -197,7 +197,7 @@ class EquilibriumSearch {
     return lowest;
   }
 
-  // Two stationary attitudes are one where no energy rises between them.
+  // True if two attitudes are the same minimum: they are near, and the energy does not rise between them.
   bool is_same(const Minimum& a, const Minimum& b) const {
     constexpr double kNear = 0.03;  // [rad]
     if ((a.attitude.up_B - b.attitude.up_B).norm() > kNear) return false;

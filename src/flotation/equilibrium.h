@@ -2,8 +2,8 @@
 //
 // The stable equilibria are the minima of the energy m g z_G - rho g V z_B over height and attitude. They are
 // found by descents from many attitudes (docs/mathematics.md, "Equilibrium and righting arms"): each is an
-// equilibrium to rounding, and the energy rises around it. A search from many starts is no proof that there
-// is no other one: of random bodies with three attitudes on average it finds 98 %, always one.
+// equilibrium to rounding, and the energy rises around it. The search is no proof that there is no other one:
+// for random bodies with three attitudes on average it finds 98 % of them, always one.
 //
 // A body whose energy does not change along a curve of attitudes (a cylinder that turns about its axis) or at
 // all (a sphere with its centre of mass in the middle) is reported once per curve, with the family set. A
@@ -45,7 +45,7 @@ enum class AttitudeFamily {
 std::string_view to_string(FlotationOutcome outcome);
 std::string_view to_string(AttitudeFamily family);
 
-// What the mass alone decides: kSinks or kNeutral, else kFloats. It does not decide about an open mesh.
+// Returns what the mass alone decides: kSinks, kNeutral or else kFloats, and kFloats for every open mesh.
 FlotationOutcome outcome_by_mass(const FloatingBody& body, const Water& water);
 
 struct Equilibrium {
@@ -64,8 +64,8 @@ struct Equilibrium {
   double residual_torque = 0.0;  // [N m]
   double force_bound = 0.0;      // [N]
   double torque_bound = 0.0;     // [N m]
-  // [N m], of the energy's Hessian over the attitudes at constant displacement, ascending: m g GM about the
-  // waterplane's principal axes. A negative one says that the body capsizes about the axis of
+  // [N m], eigenvalues of the energy's Hessian over the attitudes at constant displacement, ascending: m g GM
+  // about the waterplane's principal axes. Where one is negative, the body capsizes about the axis of
   // state.hydrostatics with that metacentric height.
   std::array<double, 2> stiffness{};
 
@@ -76,8 +76,8 @@ struct EquilibriumOptions {
   ShipAxes axes;
   bool unstable = false;            // report the saddle points and maxima that are found, too
   std::size_t max_attitudes = 128;  // the lowest are kept
-  // Called after each start of the search with the number of starts that are done and of those that will do
-  // unless more attitudes are found; may be empty.
+  // Called after each start of the search with the number of starts so far and an estimate of their total,
+  // which grows while more attitudes are found; may be empty.
   std::function<void(std::int64_t done, std::int64_t total)> progress;
 };
 
@@ -87,14 +87,14 @@ struct Equilibria {
   bool is_truncated = false;           // there are more than max_attitudes
 };
 
-// Symmetric bodies have several attitudes of the same energy, which are all reported. Complexity: some 30
-// descents of some four steps, each of one or two displacements and a waterline (waterline.h), and three
-// displacements for its start; curves of attitudes take up to 60 steps more.
+// Finds the attitudes at which a body floats. Symmetric bodies have several attitudes of the same energy,
+// which are all reported. Complexity: about 30 descents of four steps, each of one or two displacements and a
+// waterline (waterline.h), and three displacements per start; curves of attitudes take up to 60 steps more.
 Equilibria find_equilibria(const FloatingBody& body, const Water& water,
                            const EquilibriumOptions& options = {});
 
-// The equilibrium that a body turns to from an attitude when the energy can only fall; nullopt where there is
-// none: see FlotationOutcome.
+// Returns the equilibrium that a body turns to from an attitude if the energy can only fall, or nullopt if
+// there is none (FlotationOutcome).
 std::optional<Equilibrium> find_equilibrium_from(const FloatingBody& body, const Water& water,
                                                  const Eigen::Quaterniond& q_WB, const ShipAxes& axes = {});
 

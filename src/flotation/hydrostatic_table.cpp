@@ -73,7 +73,7 @@ void HydrostaticTable::cut_midship_section() {
       };
       SectionEdge edge{cut(corners[(first + 1) % 3]), cut(corners[(first + 2) % 3]),
                        volume.placed.signed_permeability};
-      // The aft part is counter-clockwise seen from outside, and the section lies to the other side.
+      // The part aft of midship is counter-clockwise seen from outside; the section lies on its other side.
       if (p.wet()) std::swap(edge.from, edge.to);
       section_.push_back(edge);
     }

@@ -35,7 +35,7 @@ struct FormCoefficients {
   double waterplane = 0.0;  // Cwp = A / (L B)
 };
 
-// Values that divide by something that is 0 are NaN.
+// Quotients whose divisor is 0 are NaN.
 struct HydrostaticRow {
   double draft = 0.0;              // [m]
   double trim = 0.0;               // [rad]
@@ -61,18 +61,18 @@ struct HydrostaticRow {
   FormCoefficients on_lpp, on_lwl;
 };
 
-// A hull that is prepared for rows of a table. Immutable: several threads may ask for rows at once.
+// A hull that is prepared for rows of a table. It is immutable: threads may request rows at once.
 class HydrostaticTable {
  public:
   // Errors: perpendiculars that are not finite, or not aft before forward; a keel that is not finite. body:
-  // outlives the table; its mass plays no part, its centre of mass is that of MCT1cm and RM1deg. Complexity:
-  // O(triangles).
+  // outlives the table. Its centre of mass counts only in MCT1cm and RM1deg, and its mass only as a weight
+  // beside the liquids in its tanks. Complexity: O(triangles).
   static Expected<HydrostaticTable> make(const FloatingBody& body, const Water& water,
                                          const HydrostaticTableOptions& options = {});
 
   // draft: [m]. trim: [rad], between -pi/2 and pi/2. Returns nullopt where the boundary of an open mesh is
   // under water, and where a number is beyond double's range. A pure function. Complexity: O(triangles that
-  // the water cuts + log n) and the section at midship.
+  // the water cuts + log n + edges of the section at midship).
   std::optional<HydrostaticRow> row(double draft, double trim = 0.0) const;
 
   double keel() const { return keel_; }                          // [m], along up from B's origin

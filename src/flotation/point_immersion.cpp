@@ -51,7 +51,7 @@ class ImmersionSearch {
   }
 
  private:
-  // By bisection, since the lowest point and the trim may change within the step.
+  // Bisects, since the lowest point and the trim may change within the step.
   PointImmersion refined(LowestPoint dry, LowestPoint wet) const {
     constexpr double kAccuracy = 1e-12;  // [rad]
     while (std::abs(wet.arm.heel - dry.arm.heel) > kAccuracy) {

@@ -18,7 +18,7 @@ struct TrimmedBody {
   BalancedAttitude attitude;
 };
 
-// The body at a heel, over the trim.
+// Balances the body at one heel, as a function of the trim.
 class TrimSearch {
  public:
   TrimSearch(const Balance& balance, const ShipAxes& axes, double heel)
@@ -30,7 +30,7 @@ class TrimSearch {
     return TrimmedBody{trim, *attitude};
   }
 
-  // A minimum of the energy over the trim: Newton's method within a radius that adapts, as AttitudeDescent.
+  // Finds a minimum of the energy over the trim, by Newton's method in a trust region.
   std::optional<TrimmedBody> minimum(double start) const {
     return stationary(start, [&](const TrimmedBody& from, const TrimmedBody& to, double stiffness) {
       const double fall = from.attitude.energy - to.attitude.energy;
@@ -39,7 +39,7 @@ class TrimSearch {
     });
   }
 
-  // A trim without moment, of any kind.
+  // Finds a trim without moment, whether the energy has a minimum there or not.
   std::optional<TrimmedBody> any(double start) const {
     return stationary(start, [&](const TrimmedBody& from, const TrimmedBody& to, double) {
       return std::abs(moment(to)) < std::abs(moment(from));
@@ -68,7 +68,7 @@ class TrimSearch {
       const double stiffness = balance_.curvature(current->attitude).along(along(*current));
       const double slope = moment(*current);
       if (std::abs(slope) <= 0.01 * balance_.gradient_rounding()) break;
-      // Downhill where the energy has no minimum nearby; the other condition takes the nearest zero instead.
+      // Where Newton's step is not accepted, a step of the radius down the slope is tried.
       double step = -slope / stiffness;
       std::optional<TrimmedBody> next = step_to(*current, std::clamp(step, -radius, radius));
       if (!next || !is_better(*current, *next, stiffness)) {
@@ -98,7 +98,7 @@ class TrimSearch {
   double heel_;
 };
 
-// What stays the same for all heels.
+// Computes the arms of one body, with what is the same for all heels.
 class ArmSearch {
  public:
   ArmSearch(const FloatingBody& body, const Water& water, const RightingArmOptions& options)
@@ -142,7 +142,7 @@ class ArmSearch {
   double keel_;
 };
 
-// The heel between two at which the arm vanishes, by false position with bisection.
+// Returns the arm between two heels at which GZ vanishes, by false position with bisection.
 std::optional<RightingArm> crossing_between(const ArmSearch& search, RightingArm low, RightingArm high) {
   constexpr double kAccuracy = 1e-13;  // [rad]
   constexpr int kMaxRounds = 100;
@@ -159,7 +159,7 @@ std::optional<RightingArm> crossing_between(const ArmSearch& search, RightingArm
   return std::abs(low.gz) < std::abs(high.gz) ? low : high;
 }
 
-// The arm of the largest side * gz between two heels, by golden section.
+// Returns the arm of the largest side * gz between two heels, by golden section.
 std::optional<RightingArm> max_between(const ArmSearch& search, const RightingArm& low,
                                        const RightingArm& high, double side) {
   constexpr double kAccuracy = 1e-8;  // [rad]
@@ -183,7 +183,7 @@ std::optional<RightingArm> max_between(const ArmSearch& search, const RightingAr
   return side * a->gz > side * b->gz ? a : b;
 }
 
-// points: ascending in heel.
+// arms: ascending in heel. side: 1 starboard, -1 port.
 std::optional<RightingArm> max_to_side(const ArmSearch& search, const std::vector<RightingArm>& arms,
                                        double side) {
   std::size_t best = arms.size();
@@ -226,7 +226,7 @@ std::optional<RightingCurve> righting_curve(const FloatingBody& body, const Wate
   const std::optional<RightingArm> upright = search.at(0.0, 0.0);
   if (!upright) return std::nullopt;
 
-  // Outwards from heel 0, to either side.
+  // The arms are computed outwards from heel 0, to either side.
   std::vector<RightingArm> arms(heels.size());
   const auto first_positive =
       static_cast<std::size_t>(std::lower_bound(heels.begin(), heels.end(), 0.0) - heels.begin());

@@ -8,7 +8,7 @@
 // port coordinate is 0) and s the horizontal direction to starboard,
 //   GZ = (C - G) . s,   KN = (C - K) . s.
 // The area under the curve is that from heel 0. It is the difference of the energy, divided by the weight,
-// and so exact to rounding for every step of the heel; with a trim, what the trim adds is a trapezoidal sum.
+// and so exact to rounding for every step of the heel; the part that a free trim adds is a trapezoidal sum.
 #pragma once
 
 #include <cstdint>
@@ -43,9 +43,9 @@ struct RightingArm {
 };
 
 // start_trim: [rad], where the search for the trim starts. Returns nullopt where the body does not float at
-// this heel: see FlotationOutcome, and where no trim below 89 degrees balances. A pure function: heels may
-// be computed in parallel. Complexity: some five rounds of some three displacements; that of lowest_along()
-// for the draft.
+// this heel (FlotationOutcome), and where no trim below 89 degrees balances. A pure function: heels may be
+// computed in parallel. Complexity: about five rounds of three displacements, and lowest_along() for the
+// draft.
 std::optional<RightingArm> righting_arm(const FloatingBody& body, const Water& water, double heel,
                                         const RightingArmOptions& options = {}, double start_trim = 0.0);
 
@@ -57,16 +57,16 @@ struct RightingCurvePoint {
 // A heel other than 0 at which the arm vanishes.
 struct ArmCrossing {
   double heel = 0.0;     // [rad]
-  bool returns = false;  // does the arm turn the body back to this heel: an angle of loll or of rest?
+  bool returns = false;  // true if the arm turns the body back to this heel, as at an angle of loll
 };
 
 struct RightingCurve {
   std::vector<RightingCurvePoint> points;  // in the order of the heels
-  std::vector<ArmCrossing> crossings;      // ascending; between heels that were asked for
-  // The largest arm to either side, between the heels that were asked for; nullopt where none is above 0.
+  std::vector<ArmCrossing> crossings;      // ascending; between the requested heels
+  // The largest arm to either side, between the requested heels; nullopt where none is above 0.
   std::optional<RightingArm> max_starboard, max_port;
-  // [rad], the first heel outwards to either side at which righting_arm() has no result: it and those beyond
-  // it have no points, since their areas are unknown.
+  // [rad], the first heel outwards to either side at which righting_arm() has no result. This heel and those
+  // beyond it have no points, since their areas are unknown.
   std::optional<double> unbalanced_starboard, unbalanced_port;
 
   // [rad], the end of the range of stability to starboard (port: below 0): the first heel beyond 0, or

@@ -9,8 +9,8 @@
 namespace buoyancy {
 namespace {
 
-// The coordinate along a horizontal axis of a point of the water plane, from its coordinates along b and c:
-// k y = h gives that along a. axis: in metres per unit of length of the tree; start: [m].
+// Expresses a point's coordinate along a horizontal axis by its coordinates along b and c; k . y = h
+// eliminates the one along a. axis: in metres per unit of length of the tree; start: [m].
 PlaneCoordinate coordinate(const TreeQuery& query, const Vec3& axis, double start) {
   const std::array<std::size_t, 3>& axes = query.axes;
   const double per_k_a = axis[static_cast<int>(axes[0])] / query.k[axes[0]];
@@ -28,7 +28,7 @@ Waterline waterline(const HydrostaticMesh& mesh, const WaterPlane& plane, const 
   const WaterlineSum sum =
       sum_waterline(tree, query, coordinate(query, tree.scale * axes.u, axes.u.dot(start)),
                     coordinate(query, tree.scale * axes.v, axes.v.dot(start)));
-  // The edges have the wet surface to their left seen from outside: they run clockwise seen from above.
+  // The edges have the wet surface to their left seen from outside, so they run clockwise from above.
   return {.area = sum.area / -2.0,
           .u = sum.u / -6.0,
           .v = sum.v / -6.0,

@@ -9,8 +9,8 @@
 
 namespace buoyancy {
 
-// Horizontal axes: u, v and up are right-handed and unit; coordinates are relative to `origin`, in the
-// mesh's frame, relative to its centre c.
+// Horizontal axes: u, v and up are right-handed and unit. Coordinates start at `origin`, which is given in
+// the mesh's frame, relative to its centre c.
 struct WaterlineAxes {
   Vec3 u = Vec3::UnitX();
   Vec3 v = Vec3::UnitY();
