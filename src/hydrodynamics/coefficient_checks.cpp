@@ -14,9 +14,9 @@ const char* const kNegativeSignHint =
 
 namespace {
 
-// Relative to the diagonal elements of its row and its column: matrices are often given with seven digits.
+// The allowed asymmetry relative to the elements. Matrices are often given with seven digits.
 constexpr double kAsymmetry = 1e-6;
-// Of the eigenvalues of the matrix scaled to a diagonal of ones.
+// The allowed magnitude of a negative eigenvalue of the matrix scaled to a diagonal of ones.
 constexpr double kIndefinite = 1e-6;
 
 std::string element(Eigen::Index row, Eigen::Index column) {
@@ -33,8 +33,8 @@ std::optional<CoefficientFault> find_negative_diagonal(const Mat6& matrix) {
   return std::nullopt;
 }
 
-// Of a symmetric matrix without negative diagonal elements. Scaled to a diagonal of ones, since its elements
-// have different units.
+// Checks a symmetric matrix without negative diagonal elements, scaled to a diagonal of ones since its
+// elements have different units.
 std::optional<CoefficientFault> find_indefinite(const Mat6& matrix) {
   const CoefficientFault fault{
       "a matrix whose symmetric part is positive semidefinite", "",
@@ -102,7 +102,7 @@ std::optional<Vec6> find_driving_twist(const Mat6& quadratic) {
   for (int signs = 0; signs < 64; ++signs) {
     Vec6 u;
     for (Eigen::Index i = 0; i < 6; ++i) {
-      // Unequal magnitudes: at equal ones, the gradient may vanish by symmetry.
+      // The magnitudes are unequal, since at equal ones the gradient may vanish by symmetry.
       u[i] = ((signs >> i) & 1 ? -1.0 : 1.0) * (1.0 + 0.1 * static_cast<double>(i));
     }
     u.normalize();

@@ -9,26 +9,26 @@
 
 namespace buoyancy {
 
-// What is wrong with a matrix, in parts of an Error.
+// Describes what is wrong with a matrix, in parts of an Error.
 struct CoefficientFault {
   std::string expected;
   std::string cause;
   std::string hint;
 };
 
-// Of numbers that have the sign of another convention. The words are the same wherever it is detected.
+// The hint about numbers in another sign convention, the same wherever they are detected.
 extern const char* const kNegativeSignHint;
 
-// A drag matrix, linear or quadratic: no negative diagonal element, and a symmetric part that is positive
-// semidefinite, so that the drag of a motion along one axis opposes it. Complexity: O(1).
+// Checks that a drag matrix, linear or quadratic, has no negative diagonal element and a positive
+// semidefinite symmetric part, so that the drag of a motion along one axis opposes it. Complexity: O(1).
 std::optional<CoefficientFault> find_drag_fault(const Mat6& matrix);
 
-// An added mass: symmetric within 1e-6 of its diagonal elements, and positive semidefinite. Complexity: O(1).
+// Checks that an added mass is symmetric, to a relative 1e-6, and positive semidefinite. Complexity: O(1).
 std::optional<CoefficientFault> find_added_mass_fault(const Mat6& matrix);
 
-// Is the power of the quadratic drag, twist . D2 (|twist| o twist), negative for a twist near the one that
-// is returned? That cannot be where D2 is diagonal; a full matrix can pass find_drag_fault() and drive the
-// body all the same. A search by descent from 64 twists: it finds what it returns, and may overlook others.
+// Returns a twist for which the power of the quadratic drag, twist . D2 (|twist| o twist), is negative, if a
+// search by descent from 64 twists finds one; it may overlook others. There is none where D2 is diagonal, but
+// a full matrix can pass find_drag_fault() and still drive the body.
 std::optional<Vec6> find_driving_twist(const Mat6& quadratic);
 
 }  // namespace buoyancy

@@ -20,7 +20,7 @@ enum class ImmersionScaling {
 
 struct DragCoefficients {
   Mat6 linear = Mat6::Zero();     // D1 [N/(m/s), N m/(rad/s) and mixed]; symmetric part positive semidefinite
-  Mat6 quadratic = Mat6::Zero();  // D2 [N/(m/s)^2, N m/(rad/s)^2 and mixed]; likewise
+  Mat6 quadratic = Mat6::Zero();  // D2 [N/(m/s)^2, N m/(rad/s)^2 and mixed]; as for D1
   Vec3 center_B = Vec3::Zero();   // [m]
   ImmersionScaling immersion = ImmersionScaling::kVolume;
 

@@ -19,7 +19,7 @@ Vec3 gyroscopic_torque(const Mat3& inertia, const Vec3& w) {
   return w.cross(inertia * w);
 }
 
-// The acceleration of the centre of mass and the angular acceleration.
+// Returns the acceleration of the centre of mass and the angular acceleration.
 Vec6 acceleration_of_center(const CoupledBody& body, const Vec6& wrench_W, double step) {
   const Vec3 lever = lever_to_center_W(body);
   const Mat3& R_WB = body.motion.R_WB;

@@ -1,5 +1,5 @@
-// The motion of a rigid body together with its added mass: what a simulator of your own does with the loads
-// of the service (BUOYANCY_LOADS).
+// The motion of a rigid body together with its added mass: how a simulator of your own uses the loads that
+// the service publishes (BUOYANCY_LOADS).
 //
 // The wrench of the service leaves out -s A nu_dot, because an explicit force that is proportional to the
 // acceleration diverges as soon as the added mass exceeds the body's. The simulator moves it to the left
@@ -18,7 +18,7 @@
 // where D also gets the derivatives of the other velocity-dependent terms of that side. Drag then makes no
 // step too large. Weight does not act on added mass: it stays that of the body's mass alone.
 //
-// All vectors and matrices in W's axes, torques about r. Derivation and limits: docs/runs.md.
+// All vectors and matrices are in W's axes, and torques are about r. Derivation and limits: docs/runs.md.
 #pragma once
 
 #include "hydrodynamics/hydrodynamic_load.h"
@@ -31,8 +31,8 @@ struct RigidBodyMass {
   Mat3 inertia_B = Mat3::Identity();     // [kg m^2], about the centre of mass; positive definite
 };
 
-// The mass matrix of the body alone about a point, in W's axes: kinetic energy = 1/2 nu . M nu, with nu the
-// velocity of that point and the angular velocity. point_B: [m].
+// Returns the mass matrix of the body alone about a point, in W's axes: the kinetic energy is 1/2 nu . M nu,
+// with nu the velocity of that point and the angular velocity. point_B: [m].
 Mat6 mass_matrix_W(const RigidBodyMass& mass, const Mat3& R_WB, const Vec3& point_B);
 
 // A body in the water at one moment.
@@ -46,15 +46,15 @@ struct CoupledBody {
 // The weight about r. gravity_W: [m/s^2], pointing down.
 Vec6 weight_W(const CoupledBody& body, const Vec3& gravity_W);
 
-// The acceleration of r [m/s^2] and the angular acceleration [rad/s^2]. wrench_W: the sum of all wrenches
-// about r, including the weight. step: [s], >= 0; above 0 the mean acceleration of a linearly implicit step,
-// whose changes of the velocities are step times the result. Complexity: O(1), no heap.
+// Returns the acceleration of r [m/s^2] and the angular acceleration [rad/s^2]. wrench_W: the sum of all
+// wrenches about r, with the weight. step: [s], >= 0; above 0 the result is the mean acceleration of a
+// linearly implicit step, which changes the velocities by step times the result. Complexity: O(1), no heap.
 Vec6 coupled_acceleration(const CoupledBody& body, const Vec6& wrench_W, double step = 0.0);
 
-// For engines whose bodies have no 6 x 6 mass matrix, such as Bullet and ODE: the wrench about the centre of
-// mass that gives the body of mass M alone the acceleration from above, M (M + s A)^-1 W with the Coriolis
-// terms. It replaces all wrenches in wrench_W, also the weight: turn off the engine's gravity for this body.
-// The engine must subtract w x I w itself, as Bullet and ODE do by default.
+// Serves engines whose bodies have no 6 x 6 mass matrix, such as Bullet and ODE: returns the wrench about the
+// centre of mass that gives the body of mass M alone the acceleration from above, M (M + s A)^-1 W with the
+// Coriolis terms. It replaces all wrenches in wrench_W, including the weight: turn off the engine's gravity
+// for this body. The engine must subtract w x I w itself, as Bullet and ODE do by default.
 //
 // This is wrong while the body touches something: contact and joint forces that the engine adds act on M
 // alone, as if the body had no added mass.

@@ -6,7 +6,7 @@ namespace buoyancy {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-// Longest chain of operations of a load's component, several times over.
+// Several times the longest chain of operations that leads to a component of a load.
 constexpr double kRoundings = 64.0;
 
 // Magnitudes that bound a load and its error at a centre.
@@ -25,13 +25,13 @@ Magnitudes magnitudes_of(const BodyMotion& motion, double center_distance, const
   return m;
 }
 
-// Adds the error of a load with these bounds at s = 1 about its centre: `full` of its size, `error` of what
-// its input is off. lever: [m], from the centre to the reference point.
+// Bounds on the norms of a load about its centre at s = 1, and on their errors by those of its input.
 struct PartBound {
   double force = 0.0, torque = 0.0;              // [N], [N m]
   double force_error = 0.0, torque_error = 0.0;  // [N], [N m]
 };
 
+// lever: [m], from the centre to the reference point.
 void add_error(const PartBound& part, const ImmersionFactor& s, double lever, HydrodynamicLoad& load) {
   const double rounding = kRoundings * kEpsilon * s.value;
   const double force = s.value * part.force_error + (rounding + s.error) * part.force;
@@ -40,7 +40,7 @@ void add_error(const PartBound& part, const ImmersionFactor& s, double lever, Hy
   load.torque_error_bound += torque + lever * force;
 }
 
-// A wrench in B's axes about a centre, in W's axes and about the reference point.
+// Converts a wrench in B's axes about a centre to W's axes and the reference point.
 Vec6 to_reference_W(const Vec6& wrench_B, const Vec3& center_to_reference_B, const Mat3& R_WB) {
   const Vec6 moved = wrench_about(wrench_B, center_to_reference_B);
   Vec6 wrench_W;
@@ -161,7 +161,7 @@ HydrodynamicMatrices HydrodynamicModel::matrices(const HydrodynamicState& state)
   HydrodynamicMatrices matrices;
   const Mat3& R_WB = state.motion.R_WB;
   Mat6 damping_B = Mat6::Zero();  // about the reference point
-  // What is dry is left out, since a factor of 0 times a velocity that overflows is NaN.
+  // A dry body's terms are left out, since a factor of 0 times a velocity that overflows is NaN.
   if (coefficients_.drag && state.at_drag.immersion.value > 0.0) {
     const DragCoefficients& drag = *coefficients_.drag;
     const auto& [water, s] = state.at_drag;

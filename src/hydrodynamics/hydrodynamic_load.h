@@ -1,4 +1,4 @@
-// The load of the water on a moving body, besides buoyancy: drag, and what of added mass is a force.
+// The load of the water on a moving body besides buoyancy: drag, and those added-mass terms that are forces.
 //
 // At a centre, in B's axes, with nu = (R^T (v_center - v_water), R^T w) the twist relative to the water, D1
 // and D2 the drag matrices, A the added mass, and s the immersion (coefficients.h):
@@ -6,13 +6,13 @@
 //   drag         -s (D1 + D2 diag(|nu|)) nu
 //   added mass   -C_A(nu) nu + s A nu_dot_water,  nu_dot_water = (R^T a_water - R^T w x R^T v_water, 0)
 //
-// with C_A the Coriolis matrix of s A (base/spatial.h): its moment is Munk's, which turns a slender body
-// broadside on. The inertial part -s A nu_dot is not among the forces: one step late it diverges as soon as
-// the added mass exceeds the body's mass. The matrix s A is there for the simulator's own mass matrix
-// instead. The change of s A, as when a body enters the water, is left out. After T. I. Fossen, Handbook of
-// Marine Craft Hydrodynamics and Motion Control (2011), sections 6.3, 6.4 and 8.1.
+// C_A is the Coriolis matrix of s A (base/spatial.h); its moment is the Munk moment, which turns a slender
+// body broadside on. The inertial part -s A nu_dot is not among the forces, since one step late it diverges
+// as soon as the added mass exceeds the body's mass; the matrix s A is for the simulator's mass matrix
+// instead. The rate of change of s A, as when a body enters the water, is neglected. See T. I. Fossen,
+// Handbook of Marine Craft Hydrodynamics and Motion Control (2011), sections 6.3, 6.4 and 8.1.
 //
-// v_water is the velocity of the water that would be at the centre without the body, the same all over it.
+// v_water is the velocity that the water would have at the centre without the body, uniform over the body.
 #pragma once
 
 #include "hydrodynamics/coefficients.h"
@@ -39,7 +39,7 @@ struct ImmersionFactor {
   double error = 0.0;
 };
 
-// The surroundings of one set of coefficients.
+// The flow and the immersion for one set of coefficients.
 struct Surroundings {
   FlowAtBody water;  // at the centre
   ImmersionFactor immersion;
@@ -51,7 +51,7 @@ struct HydrodynamicState {
   Surroundings at_added_mass;
 };
 
-// In W's axes, torques about the reference point.
+// Wrenches are in W's axes, with torques about the reference point.
 struct HydrodynamicLoad {
   Vec6 drag_W = Vec6::Zero();        // [N, N m]
   Vec6 added_mass_W = Vec6::Zero();  // [N, N m]
@@ -59,14 +59,14 @@ struct HydrodynamicLoad {
   double torque_error_bound = 0.0;   // [N m]
 };
 
-// In W's axes, about the reference point. The velocities are those of the reference point and w.
+// Matrices are in W's axes, about the reference point, and act on its velocity and on w.
 struct HydrodynamicMatrices {
   Mat6 added_mass_W = Mat6::Zero();  // s A [kg, kg m, kg m^2]
   // -d(force, torque)/d(velocity, angular velocity) of drag and added mass together [N/(m/s), ...].
   Mat6 damping_W = Mat6::Zero();
 };
 
-// The coefficients of a body, with what the loads at every pose need of them. Immutable; a query allocates
+// The coefficients of a body, prepared for the loads at many poses. It is immutable, and a query allocates
 // nothing. Complexity: O(1), a tenth of a microsecond.
 class HydrodynamicModel {
  public:
@@ -82,7 +82,7 @@ class HydrodynamicModel {
   const HydrodynamicCoefficients& coefficients() const { return coefficients_; }
   const Vec3& reference_B() const { return reference_B_; }
 
-  // The point that a matrix belongs to, and what scales it.
+  // The point that a matrix is about, and what scales the matrix.
   struct Placement {
     Vec3 center_B = Vec3::Zero();        // [m]
     Vec3 to_reference_B = Vec3::Zero();  // [m], from the centre to the reference point
@@ -97,8 +97,8 @@ class HydrodynamicModel {
   }
 
  private:
-  // A matrix as a load needs it: its diagonal and whether it has nothing else, as most have, and the
-  // Frobenius norms of its blocks, from which rounding errors are bounded.
+  // A matrix prepared for loads: its diagonal, whether it has other elements (most have none), and the
+  // Frobenius norms of its blocks, which bound rounding errors.
   struct MatrixTerms {
     explicit MatrixTerms(const Mat6& matrix);
     MatrixTerms() = default;
@@ -107,8 +107,8 @@ class HydrodynamicModel {
     double force_v = 0.0, force_w = 0.0, torque_v = 0.0, torque_w = 0.0;
     bool is_diagonal = true;
   };
-  // What every pose reads is together, apart from the whole matrices: a request for many bodies spends much
-  // of its time waiting for memory.
+  // What every pose reads is stored together, apart from the whole matrices, because a request for many
+  // bodies spends much of its time waiting for memory.
   struct DragTerms {
     const DragCoefficients* matrices = nullptr;
     Placement placement;
@@ -129,7 +129,7 @@ class HydrodynamicModel {
   HydrodynamicCoefficients coefficients_;
 };
 
-// nu of a centre: the twist relative to the water, in B's axes.
+// Returns nu at a centre: the twist relative to the water, in B's axes.
 Vec6 relative_twist_B(const BodyMotion& motion, const Vec3& center_B, const Vec3& water_velocity_W);
 
 }  // namespace buoyancy

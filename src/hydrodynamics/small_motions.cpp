@@ -13,8 +13,8 @@
 namespace buoyancy {
 namespace {
 
-// The index of the eigenvector that each of heave, roll and pitch belongs to: the assignment whose
-// coordinates carry the most energy. share(i, j): of eigenvector j's energy, that in coordinate i.
+// Assigns an eigenvector to each of heave, roll and pitch such that these coordinates carry the most energy.
+// share(i, j): the part of eigenvector j's energy that is in coordinate i.
 std::array<Eigen::Index, 3> assign_modes(const Mat3& share) {
   std::array<Eigen::Index, 3> modes{0, 1, 2};
   std::array<Eigen::Index, 3> best = modes;
@@ -34,8 +34,8 @@ std::array<Eigen::Index, 3> assign_modes(const Mat3& share) {
 std::optional<HeaveRollPitch> heave_roll_pitch(const Mat6& mass, const Mat6& stiffness) {
   constexpr std::array<Eigen::Index, 3> kFree{0, 1, 5};  // surge, sway, yaw
   constexpr std::array<Eigen::Index, 3> kRestored{2, 3, 4};
-  // Nothing restores the free coordinates. They follow the others so that their momentum stays zero, which
-  // changes the mass of those.
+  // Nothing restores the free coordinates. They follow the others such that their momentum stays zero, which
+  // changes the mass of the others.
   const Mat3 coupling = mass(kFree, kRestored);
   const Eigen::LLT<Mat3> free_mass(mass(kFree, kFree));
   if (free_mass.info() != Eigen::Success) return std::nullopt;
