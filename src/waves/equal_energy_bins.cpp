@@ -57,7 +57,7 @@ EqualEnergyBins::Integral EqualEnergyBins::integral_to(double energy) const {
   const double wanted = energy - below.energy;
   double place = begin + (end - begin) * wanted / (integral_below_[i].energy - below.energy);
   Integral part = integrate(begin, place);
-  // Newton's method: each step squares the error, a hundredth of the interval at first.
+  // Each step of Newton's method squares the error, which is a hundredth of the interval at first.
   constexpr int kSteps = 3;
   for (int step = 0; step < kSteps; ++step) {
     place = std::clamp(place + (wanted - part.energy) / density_(place), begin, end);

@@ -10,15 +10,15 @@ namespace buoyancy {
 
 class EqualEnergyBins {
  public:
-  // The energy-weighted mean that stands for a bin. That of the squares keeps the density's second moment.
+  // The energy-weighted mean that represents a bin. The root mean square keeps the density's second moment.
   enum class Mean { kArithmetic, kRootMeanSquare };
 
-  // density: positive almost everywhere, and smooth between each two of the boundaries, which ascend.
-  // Integrates it with five points of Gauss-Legendre quadrature between each two.
+  // density: positive almost everywhere, and smooth between neighbours of the ascending boundaries. It is
+  // integrated with five points of Gauss-Legendre quadrature between neighbours.
   EqualEnergyBins(std::function<double(double)> density, std::span<const double> boundaries, Mean mean);
 
   double energy() const { return integral_below_.back().energy; }  // the integral of the density
-  // The means of `bins` bins, ascending.
+  // Returns the means of `bins` bins of equal energy, ascending.
   std::vector<double> means(std::size_t bins) const;
 
  private:
@@ -28,13 +28,13 @@ class EqualEnergyBins {
   };
 
   Integral integrate(double begin, double end) const;
-  // The integral up to the place below which there is this energy.
+  // Returns the integral up to the value of the variable below which there is this energy.
   Integral integral_to(double energy) const;
 
   std::function<double(double)> density_;
   Mean mean_;
   std::vector<double> boundaries_;
-  std::vector<Integral> integral_below_;  // each boundary
+  std::vector<Integral> integral_below_;  // one entry per boundary
 };
 
 }  // namespace buoyancy

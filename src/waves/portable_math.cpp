@@ -29,7 +29,7 @@ double tanh(double x) {
 }
 
 SinCos sin_cos_of_degrees(double degrees) {
-  // The nearest multiple of 90 and the angle from it, both exact.
+  // The nearest multiple of 90 degrees and the angle from it are both exact.
   const double within_turn = std::remainder(degrees, 360.0);
   const double quarters = std::nearbyint(within_turn / 90.0);
   const Quad angle = (Quad(within_turn) - Quad(90.0 * quarters)) * (boost::math::constants::pi<Quad>() / 180);

@@ -10,7 +10,7 @@ std::array<std::uint32_t, 2> key_of(std::uint64_t seed) {
   return {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U)};
 }
 
-// The third word of the counter.
+// The third word of the counter keeps the random numbers of phases and of orders apart.
 constexpr std::uint32_t kPhases = 0;
 constexpr std::uint32_t kOrders = 1;
 
@@ -45,7 +45,7 @@ std::vector<std::size_t> random_order(std::uint64_t seed, std::uint32_t system, 
                                       std::size_t count) {
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  // R. A. Fisher and F. Yates: each place from the last one on gets one of the numbers that are left.
+  // The shuffle of R. A. Fisher and F. Yates: from the last place on, each gets one of the numbers left.
   for (std::size_t left = count; left > 1; --left) {
     const std::uint64_t random =
         philox({group, system, kOrders, static_cast<std::uint32_t>(left)}, key_of(seed))[0];

@@ -1,5 +1,5 @@
-// Random phases and orders of wave components: a counter-based generator, so that a phase depends on nothing
-// but the seed and the component's place.
+// Random phases and orders of wave components. The generator is counter-based, so that a phase depends on
+// nothing but the seed and the component's place.
 //
 // Source: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers: as easy as 1, 2, 3",
 // SC11: Philox4x32-10.
@@ -15,11 +15,11 @@ namespace buoyancy {
 // Philox4x32-10.
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
 
-// [deg], uniform in [0, 360). The same on every machine.
+// Returns a phase [deg], uniform in [0, 360) and the same on every machine.
 double random_phase(std::uint64_t seed, std::uint32_t system, std::uint32_t component);
 
-// The numbers from 0 to count - 1 in an order that depends on the seed, the system and the group. count:
-// below 2^32. The same on every machine.
+// Returns the numbers from 0 to count - 1 in an order that depends on the seed, the system and the group, and
+// is the same on every machine. count: below 2^32.
 std::vector<std::size_t> random_order(std::uint64_t seed, std::uint32_t system, std::uint32_t group,
                                       std::size_t count);
 

@@ -87,7 +87,7 @@ struct AmplitudeSums {
 AmplitudeSums sums_of(const RegularWave& wave) {
   return {0.5 * wave.height, 0.25 * wave.height * wave.height};
 }
-// An irregular sea has enough components that their phases never agree.
+// Irregular waves have so many components that the sum of the amplitudes, when all phases agree, is no limit.
 AmplitudeSums sums_of(const IrregularWaves& waves) {
   const double height = waves.significant_wave_height;
   return {height > 0.0 ? std::numeric_limits<double>::infinity() : 0.0, height * height / 8.0};
@@ -101,7 +101,7 @@ AmplitudeSums sums_of(const WaveComponents& components) {
   return sums;
 }
 
-// [m], the sum of the amplitudes, or 4 standard deviations of the elevation where that is less.
+// Returns the sum of the amplitudes [m], or 4 standard deviations of the elevation where that is less.
 double deepest_trough(const SeaDescription& description) {
   AmplitudeSums total;
   for (const WaveSystem& system : description.systems) {

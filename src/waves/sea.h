@@ -1,6 +1,6 @@
 // A sea: wave components over water at rest, prepared once per scene, immutable and shared by all threads.
 //
-// Linear (Airy) waves. With the horizontal position X = (e1 . x, e2 . x) of a point x and its height
+// The waves are linear (Airy). With the horizontal position X = (e1 . x, e2 . x) of a point x and its height
 // zeta = up . x - level over the water at rest, component i has the phase theta_i = k_i d_i . (X - U t) -
 // w_i t + phase_i, where U is the horizontal part of the current that carries the waves, and
 //   eta = sum a_i cos(theta_i)                           elevation of the surface
@@ -8,8 +8,8 @@
 //   p/(rho g) = -zeta + sum a_i E_i(z') cos(theta_i)     E(z') = cosh k(z' + h) / cosh kh, with Wheeler's
 //                                                        stretching z' = h s / (h + eta), h the depth
 //   p/(rho g) = -s                                       where the pressure is `hydrostatic`
-// In deep water z' = s and E = exp(k z'). Below the bed, and where a trough uncovers it, z' = -h: the waves
-// are those at the bed. See docs/waves.md.
+// In deep water z' = s and E = exp(k z'). Below the bed, and where a trough uncovers it, z' = -h, so that the
+// waves are those at the bed. See docs/waves.md.
 #pragma once
 
 #include <cstdint>
@@ -59,9 +59,9 @@ class Sea {
   WavePressure pressure() const { return pressure_; }
   std::int64_t time_origin() const { return time_origin_; }  // [us]
   double ramp() const { return ramp_; }                      // [s]
-  const Vec3& current_W() const { return current_W_; }       // [m/s], that carries the waves
+  const Vec3& current_W() const { return current_W_; }       // [m/s], carries the waves
 
-  // As described, system after system. Made into a system of components they describe the same sea.
+  // The described components, system after system. As one system of components they describe the same sea.
   const WaveComponents& components() const { return components_; }
   const PreparedComponents& prepared() const { return prepared_; }
   bool is_still() const { return prepared_.size() == 0; }  // no amplitude is above 0
@@ -71,9 +71,9 @@ class Sea {
   double max_wave_number() const;          // [rad/m]; 0 in still water
 
   // How steep the sea gets: 4 standard deviations of the vertical derivative of its wave pressure at the
-  // surface, over rho g, which are 4 sqrt(sum (a k)^2 / 2), or sum a k where that is less: no sea exceeds it.
-  // From 1 on, the modelled pressure falls downwards under some crests, which no water does: the sea is too
-  // steep for linear theory. (Water of finite depth: an upper bound, its derivative has a factor tanh(kh).)
+  // surface, over rho g, which are 4 sqrt(sum (a k)^2 / 2), or its limit sum a k where that is less. From 1
+  // on, the modelled pressure falls downwards under some crests, so that the sea is too steep for linear
+  // theory. In finite depth this is an upper bound, since the derivative has a factor tanh(kh).
   double extreme_steepness() const;
   bool is_too_steep() const { return extreme_steepness() >= 1.0; }
 

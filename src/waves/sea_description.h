@@ -1,5 +1,5 @@
-// What a user says about the sea: its wave systems, its depth, and how pressure follows from them. sea.h
-// makes a Sea of it.
+// What a user says about the sea: its wave systems, its depth, and how pressure follows from them.
+// Sea::make() (sea.h) makes a Sea of it.
 //
 // Directions and phases are in degrees, as in the scene file and in the tools of the field; everything else
 // is in SI units. A direction is the one TOWARDS which waves run, anticlockwise seen from above, from the
@@ -42,11 +42,11 @@ struct IrregularWaves {
   double peak_period = 1.0;              // [s], > 0
   std::optional<double> gamma;           // peak enhancement, 1 to 10; default: default_gamma()
   double direction = 0.0;                // [deg], the mean
-  // s of the directional spreading cos^2s(angle / 2), > 0; default: long-crested.
+  // s of the directional spreading cos^2s(angle / 2), > 0; by default the waves are long-crested.
   std::optional<double> spreading;
   std::optional<std::int32_t> frequencies;  // of each direction; default: frequencies_of()
   std::int32_t directions = 1;              // number of bins of equal energy; 1 without a spreading
-  double cutoff = 3.0;                      // highest angular frequency over that of the peak, > 1
+  double cutoff = 3.0;                      // highest angular frequency over that of the peak, 1.1 to 20
   std::uint64_t seed = 1;                   // of the phases and of the order of directions
 };
 
@@ -59,7 +59,7 @@ enum class WavePressure {
   kWheeler,      // linear wave theory, stretched to the instantaneous surface
 };
 
-// As in the scene file.
+// Returns the value of the scene file's key.
 constexpr std::string_view to_string(WavePressure pressure) {
   return pressure == WavePressure::kWheeler ? "wheeler" : "hydrostatic";
 }
@@ -69,7 +69,7 @@ struct SeaDescription {
   WavePressure pressure = WavePressure::kWheeler;
   std::int64_t time_origin = 0;  // [us], the utime of t = 0
   double ramp = 0.0;             // [s], see Sea::amplitude_factor()
-  // [m/s]. Its horizontal part carries the waves: frequencies are those that an observer sees who drifts.
+  // [m/s]. Its horizontal part carries the waves; an observer drifting with it sees the given frequencies.
   Vec3 current_W = Vec3::Zero();
   std::vector<WaveSystem> systems;
 };

@@ -1,6 +1,6 @@
-// The ranges of the numbers that describe a sea. The scene file's keys and Sea::make() are checked against
-// the same ones: wide enough for every basin and ocean, and such that nothing that follows from them
-// overflows.
+// The ranges of the numbers that describe a sea, against which both the scene file's keys and Sea::make()
+// check. They are wide enough for every basin and ocean, and narrow enough that nothing that follows from
+// them overflows.
 #pragma once
 
 #include "base/number_range.h"

@@ -30,7 +30,7 @@ double peak_period_of(std::span<const WaveComponent> components) {
   return kTurn * (moment(components, -2) / energy) * (moment(components, 1) / energy);
 }
 
-// The tighter of two limits of a height [m], where infinite depth limits nothing.
+// Returns the tighter of two limits of a height [m]. An infinite depth limits nothing.
 Breaking nearest(double height, double by_steepness, std::string_view steepness, double by_depth,
                  std::string_view depth) {
   return by_depth < by_steepness ? Breaking{height, by_depth, depth}
@@ -56,7 +56,7 @@ Breaking breaking_of_irregular(double significant_wave_height, double peak_perio
                  0.6 * sea.depth(), "Hs of 0.6 of the depth (Thornton and Guza 1982)");
 }
 
-// Any component may break, and all together, if there are several.
+// Each component may break, and so may the sum of several: the one nearest to its limit is reported.
 Breaking breaking_of_components(std::span<const WaveComponent> components, const WaveSystemReport& report,
                                 const Sea& sea) {
   std::optional<Breaking> worst;
@@ -72,7 +72,7 @@ Breaking breaking_of_components(std::span<const WaveComponent> components, const
   return *worst;
 }
 
-// What the components alone say.
+// Reports what follows from the components alone.
 WaveSystemReport report_as_components(std::span<const WaveComponent> components, const Sea& sea) {
   WaveSystemReport report;
   report.type = "components";
@@ -148,9 +148,9 @@ double repeat_time(std::span<const WaveComponent> components) {
   const double mean = moment(components, 1) / m0;  // [rad/s]
   const double variance = moment(components, 2) / m0 - mean * mean;
   const double period = kTurn / mean;
-  // A quarter of the time in which components part by a radian, and not below a 25th of the period.
+  // The step is a quarter of the time in which components part by a radian, or at least a 25th of the period.
   const double step = 0.25 / std::sqrt(std::clamp(variance, 1e-12 * mean * mean, mean * mean));
-  // exp(i (w - mean) t) of each component times its share of the energy, and their change over a step.
+  // Each component's exp(i (w - mean) t) times its share of the energy, and its rotation over a step.
   std::vector<double> re, im, step_cos, step_sin;
   for (const WaveComponent& component : components) {
     const double turn = (component.angular_frequency - mean) * step;

@@ -13,16 +13,16 @@
 
 namespace buoyancy {
 
-// The wave that stands for a system: of a regular wave the wave itself, of a spectrum its peak, and of
-// components the calculated peak period 2 pi m_-2 m_1 / m_0^2, since their energy need not have a peak.
+// The wave that represents a system: a regular wave itself, the peak of a spectrum, and for components, whose
+// energy need not have a peak, the calculated peak period 2 pi m_-2 m_1 / m_0^2.
 struct PeakWave {
   double period = 0.0;      // [s]
   double wavelength = 0.0;  // [m], in the water's depth
-  // WaveSystemReport::height over the wavelength; of irregular waves the significant steepness.
+  // WaveSystemReport::height over the wavelength; for irregular waves, the significant steepness.
   double steepness = 0.0;
 };
 
-// The height at which waves break, by the criterion that a system is nearest to.
+// The height at which waves break, by that criterion which a system is nearest to.
 struct Breaking {
   double height = 0.0;         // [m], of the system, or of one of its components
   double limit = 0.0;          // [m]
@@ -43,23 +43,23 @@ struct WaveSystemReport {
   std::optional<Breaking> breaking;
 };
 
-// One report per system. sea: made of this description. Complexity: O(components).
+// Returns one report per system. sea: made from this description. Complexity: O(components).
 std::vector<WaveSystemReport> report_wave_systems(const SeaDescription& description, const Sea& sea);
-// Of all components of a sea as one system of components.
+// Reports all components of a sea as one system of components.
 WaveSystemReport report_components(const Sea& sea);
 
-// [s], the time after which the record of these waves resembles its beginning, at a point that drifts with
-// the current: the first time after its initial decay at which the envelope of the autocorrelation of the
-// elevation, |sum a^2 exp(i w t)| / sum a^2, exceeds kRepeatCorrelation. Waves whose envelope never decays
-// below it, such as a regular wave, repeat after their mean period 2 pi m_0 / m_1. Infinity: not within
-// kRepeatSearch mean periods, or no energy. Complexity: O(components), about 50 us per component.
+// Returns the time [s] after which the record of these waves resembles its beginning, at a point that drifts
+// with the current: the first time after its initial decay at which the envelope of the autocorrelation of
+// the elevation, |sum a^2 exp(i w t)| / sum a^2, exceeds kRepeatCorrelation. Waves whose envelope never
+// decays below it, such as a regular wave, repeat after their mean period 2 pi m_0 / m_1. Infinity: not
+// within kRepeatSearch mean periods, or no energy. Complexity: O(components), about 50 us per component.
 inline constexpr double kRepeatCorrelation = 1.0 / 3.0;
 inline constexpr double kRepeatSearch = 5000.0;
 double repeat_time(std::span<const WaveComponent> components);
 
-// Warnings about a sea that is higher than waves get before they break, and about one that is too steep for
-// linear theory (Sea::is_too_steep()). systems: reports of the sea's systems, empty for a received sea, which
-// is one of components. subject: what the sea is of, such as the scene's name.
+// Warns about a sea that is higher than waves get before they break, and about one too steep for linear
+// theory (Sea::is_too_steep()). systems: reports of the sea's systems, or none for a received sea, which has
+// components only. subject: whose sea it is, such as the scene's name.
 std::vector<Warning> sea_warnings(const std::string& subject, const Sea& sea,
                                   std::span<const WaveSystemReport> systems);
 

@@ -18,7 +18,7 @@ double reduced(DoubleDouble phase) {
 }
 
 DoubleDouble exactly(std::int64_t whole) {
-  // The upper and the lower 32 bits are doubles.
+  // The upper and the lower 32 bits are each exact in a double.
   constexpr std::int64_t kHalf = std::int64_t{1} << 32;
   const std::int64_t high = whole / kHalf;
   return two_sum(static_cast<double>(high) * static_cast<double>(kHalf),
@@ -95,7 +95,7 @@ WaterAtPoint SeaSnapshot::at(const Vec3& p_W) const {
     const double cosine = amplitude * std::cos(theta);
     const double sine = amplitude * std::sin(theta);
     pressure_head += cosh_ratio * cosine;
-    // From the velocity potential (a g / w) cosh k(z + h) / cosh kh sin(theta).
+    // The velocity potential is (a g / w) cosh k(z + h) / cosh kh sin(theta).
     const double speed = water.gravity / components.angular_frequency[i];
     const Vec3 k_W = components.k1[i] * axes.e1_W + components.k2[i] * axes.e2_W;
     point.velocity_W += speed * (cosh_ratio * cosine * k_W + sinh_ratio * sine * k * water.up_W);

@@ -15,17 +15,17 @@ struct WaterAtPoint {
   double elevation = 0.0;  // [m], eta: of the surface above or below the point, over the level
   double height = 0.0;     // [m], s: of the point over the surface; wet where below 0
   double pressure = 0.0;   // [Pa], over that of the air
-  // Stretched linear theory (docs/waves.md): beyond first order in the steepness, the acceleration is not the
-  // derivative of the velocity. Both are those that an observer sees who drifts with the current.
-  Vec3 velocity_W = Vec3::Zero();      // [m/s], of the waves; the current comes on top
+  // By stretched linear theory (docs/waves.md). Beyond first order in the steepness, the acceleration is not
+  // the derivative of the velocity. Both are those that an observer sees who drifts with the current.
+  Vec3 velocity_W = Vec3::Zero();      // [m/s], of the waves, without the current
   Vec3 acceleration_W = Vec3::Zero();  // [m/s^2]
 };
 
-// set_time() allocates nothing after the first call, and the queries allocate nothing. Several threads may
-// query at once. Complexity: O(components) each.
+// Nothing allocates but the constructors, and phases_at() if its output has too little capacity. Several
+// threads may query at once. Complexity: O(components) each.
 class SeaSnapshot {
  public:
-  // sea: must outlive this object. At t = 0 until set_time() is called.
+  // sea: must outlive this object. The time is t = 0 until set_time() is called.
   explicit SeaSnapshot(const Sea& sea);
   SeaSnapshot(const Sea& sea, std::int64_t utime, double lead_time = 0.0);  // at this time, see set_time()
 
@@ -42,7 +42,7 @@ class SeaSnapshot {
   // 1e-15 of a turn out to 1e9 wavelengths.
   double elevation(double x1, double x2) const;
   WaterAtPoint at(const Vec3& p_W) const;
-  // Sets out[i] to the phase of component i there [rad], in [-pi, pi].
+  // Sets out[i] to the phase of component i at this place [rad], in [-pi, pi].
   void phases_at(double x1, double x2, std::vector<double>& out) const;
 
  private:

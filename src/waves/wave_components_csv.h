@@ -1,4 +1,4 @@
-// Reads wave components from CSV. The first line is the header, exactly
+// Reads wave components from CSV. The first line is exactly the header
 //   amplitude,angular_frequency,direction,phase
 // in m, rad/s, degrees and degrees (sea_description.h). Each further line is a component. Spaces around
 // fields and blank lines are ignored. Numbers that were written with 17 digits are read as the same doubles.

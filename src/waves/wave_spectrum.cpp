@@ -11,7 +11,7 @@
 namespace buoyancy {
 namespace {
 
-// The spectrum over x = w / wp, without its factor.
+// Returns the spectrum at x = w / wp, without its factor C.
 double shape(double x, double log_gamma) {
   const double squared = 1.0 / (x * x);
   double exponent = -1.25 * squared * squared;

@@ -16,28 +16,28 @@
 
 namespace buoyancy {
 
-// The peak enhancement that DNV-RP-C205 and IEC 61400-3 give for a sea of this height [m] and peak period
-// [s]: 5 for steep seas, 1 for flat ones.
+// Returns the peak enhancement that DNV-RP-C205 and IEC 61400-3 give for a sea of this height [m] and peak
+// period [s]: 5 for steep seas, 1 for flat ones.
 double default_gamma(double significant_wave_height, double peak_period);
 
-// The gamma that is used: the given one or default_gamma().
+// Returns the gamma in use: the given one or default_gamma().
 double gamma_of(const IrregularWaves& waves);
 
-// The number of frequencies of each direction that is used: the given one, or as many as make
-// kDefaultComponents or a few more.
+// Returns the number of frequencies of each direction: the given one, or as many as make kDefaultComponents
+// or a few more.
 std::int32_t frequencies_of(const IrregularWaves& waves);
 inline constexpr std::int32_t kDefaultComponents = 200;
 
-// A spectrum without its directions. C is such that the energy below the cutoff is that of the significant
-// wave height; there is none above. The same bits on every machine. Complexity: some milliseconds, and 0.2 ms
-// per bin.
+// A frequency spectrum. C is such that the energy below the cutoff is that of the significant wave height;
+// there is none above. It has the same bits on every machine. Complexity: some milliseconds, and 0.2 ms per
+// bin.
 class WaveSpectrum {
  public:
   explicit WaveSpectrum(const IrregularWaves& waves);
 
   double density(double angular_frequency) const;  // [m^2 s]; angular_frequency: [rad/s], > 0
-  // [rad/s], ascending: the root mean squares of `bins` bins of equal energy, weighted with the energy, so
-  // that m_0 and m_2, and with them the zero-crossing period, are those of the spectrum up to the cutoff.
+  // Returns the energy-weighted root mean squares of `bins` bins of equal energy [rad/s], ascending, which
+  // keep m_0, m_2 and with them the zero-crossing period of the spectrum up to the cutoff.
   std::vector<double> bin_frequencies(std::size_t bins) const;
 
  private:
@@ -48,18 +48,17 @@ class WaveSpectrum {
   double variance_;       // [m^2]
 };
 
-// [deg], ascending and symmetric about 0: the mean angles of `bins` bins of equal energy. spreading: s > 0.
+// Returns the mean angles [deg] of `bins` bins of equal energy, ascending and symmetric. spreading: s > 0.
 std::vector<double> spreading_angles(double spreading, std::size_t bins);
 
-// The components of a wave system. Irregular waves have frequencies x directions components of equal
-// amplitude, whose energy is exactly that of the significant wave height, and of ascending frequency: each
-// has a bin of its own, so that the sea is homogeneous in time and space (waves of one frequency and several
-// directions would stand still as a pattern). In each group of `directions` consecutive bins, every direction
-// occurs once, in an order drawn at random. place: of the system in the sea, from 0, a part of the key of
-// phases and orders.
+// Returns the components of a wave system. Irregular waves have frequencies x directions components of equal
+// amplitude, whose energy is exactly that of the significant wave height, in ascending frequency: each has a
+// bin of its own, so that the sea is homogeneous in time and space (waves of one frequency and several
+// directions would make a standing pattern). In each group of `directions` consecutive bins, every direction
+// occurs once, in a random order. place: the system's index in the sea, part of the random key.
 WaveComponents components_of(const WaveSystem& system, std::size_t place);
 
-// How many components_of() returns. O(1).
+// Returns the number of components that components_of() returns. Complexity: O(1).
 std::size_t number_of_components(const WaveSystem& system);
 
 }  // namespace buoyancy
