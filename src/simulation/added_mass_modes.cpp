@@ -5,7 +5,7 @@
 namespace buoyancy {
 
 Mat6 congruent(const Mat6& matrix, const Mat6& N) {
-  // Coefficient by coefficient: Eigen's blocked products are expensive to compile.
+  // The products are taken coefficient by coefficient, since Eigen's blocked ones are expensive to compile.
   const Mat6 half = matrix.lazyProduct(N);
   return N.transpose().lazyProduct(half);
 }

@@ -20,7 +20,7 @@ class AddedMassModes {
   AddedMassModes(const RigidBody& rigid, const Mat6& added_mass_B);
 
   Vec6 modal(const Vec6& twist_B, double immersion) const;
-  // N with nu = N u. A matrix from twists to wrenches becomes N^T . N, a wrench N^T times itself.
+  // Returns N with nu = N u: a matrix D from twists to wrenches becomes N^T D N, a wrench f becomes N^T f.
   Mat6 twist_of_modal(double immersion) const;
 
  private:
@@ -32,14 +32,14 @@ class AddedMassModes {
 // N^T matrix N.
 Mat6 congruent(const Mat6& matrix, const Mat6& N);
 
-// The body's own mass matrix M, in B's axes.
+// Returns the mass matrix M of the body alone, in B's axes.
 Mat6 mass_at_center(const RigidBody& rigid);
 
-// A body's added mass about its centre of mass, in B's axes; zero if it has none.
+// Returns a body's added mass about its centre of mass, in B's axes; zero if it has none.
 Mat6 added_mass_at_center(const Body& body, const RigidBody& rigid);
 
-// The immersion s (hydrodynamics/coefficients.h) of a body that displaces this volume. area: returns its
-// wetted area [m^2], called only where that scales the coefficients.
+// Returns the immersion s (hydrodynamics/coefficients.h) of a body that displaces this volume. area: returns
+// its wetted area [m^2]; it is called only where the area scales the coefficients.
 template <typename WettedAreaOf>
 double immersion_of(ImmersionScaling scaling, const HydrostaticMesh& mesh, double volume,
                     const WettedAreaOf& area) {

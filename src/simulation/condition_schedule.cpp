@@ -6,7 +6,7 @@
 namespace buoyancy {
 namespace {
 
-// How often an event is sent with each request by which it is announced.
+// Returns how many copies of an event are sent with each request that announces it.
 std::int64_t copies_of(const ConditionSchedule::Event& event) {
   const std::int64_t requests = event.step - event.announced_from + 1;
   return (kMinAnnouncements + requests - 1) / requests;
@@ -33,7 +33,7 @@ double initial_value(const Body& body, const ConditionEvent& event) {
                        : body.subdivision->compartments[index].flooded;
 }
 
-// The first step that is not before a time, but for rounding.
+// Returns the first step that is not before a time, apart from rounding.
 std::int64_t step_of(double time, double step) {
   constexpr double kRounding = 1e-9;  // of a step
   return static_cast<std::int64_t>(std::ceil(std::min(time / step, 1e15) - kRounding));
@@ -55,7 +55,7 @@ ConditionSchedule::ConditionSchedule(const Scene& scene, double step) {
       if (earlier == events_.rend()) {
         initial_.push_back({&body, 0, 0, change_of(body, event, initial_value(body, event), 0)});
       } else if (earlier->step == at) {
-        earlier->change = scheduled.change;  // the last of several at the same step
+        earlier->change = scheduled.change;  // of several at one step, the last counts
         continue;
       } else {
         scheduled.announced_from = std::max(scheduled.announced_from, earlier->step + 1);

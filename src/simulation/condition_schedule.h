@@ -1,12 +1,12 @@
-// When the simulator applies and announces the events of a scene ([[body.client.event]]).
+// Decides when the simulator applies and announces the events of a scene ([[body.client.event]]).
 //
 // An event takes effect at the first step whose time is not before its own, and holds from that step's utime
 // on. It is announced with the request of that step and of the kAnnouncedSteps before, so that the loss of
-// messages does not change a run. No announcement can take back a later one: an event of the same
-// compartment or tank is announced only when the one before has taken effect. Where this leaves fewer than
-// kMinAnnouncements, it is sent several times with each request. At step 0 the condition in the scene file is
-// announced, in place of what an earlier run left behind in the service. What holds is announced again every
-// kRenewedSteps, for a service that has been restarted.
+// messages does not change a run. An event of the same compartment or tank is announced only after the one
+// before has taken effect, since repeating the earlier change would replace the later one. Where this leaves
+// fewer than kMinAnnouncements, it is sent several times with each request. At step 0 the condition of the
+// scene file is announced, in place of what an earlier run left in the service. The current condition is
+// announced again every kRenewedSteps, for a service that has been restarted.
 #pragma once
 
 #include <cstdint>
@@ -31,28 +31,28 @@ class ConditionSchedule {
     ConditionChange change;
   };
 
-  // Of the bodies with [body.client]. step: [s].
+  // Schedules the events of the bodies with [body.client]. step: [s].
   ConditionSchedule(const Scene& scene, double step);
 
   bool empty() const { return events_.empty(); }
 
-  // What takes effect at a step, in the order of time. Steps ascend from call to call.
+  // Returns the events that take effect at a step. Steps ascend from call to call.
   std::span<const Event> events_at(std::int64_t step);
 
-  // What is sent with the request of a step, some of it several times. Valid until the next call. O(events^2)
-  // at most, at the steps at which what holds is announced again.
+  // Returns what is sent with the request of a step, some of it several times; valid until the next call.
+  // Complexity: at most O(events^2), at the steps at which the current condition is announced again.
   const std::vector<ConditionChange>& announced_at(std::int64_t step);
-  // What is sent with that request when it is sent again, perhaps to a service that has been restarted: also
-  // what holds at the step.
+  // Returns what is sent with a retry of that request, perhaps to a service that has been restarted: this
+  // includes the condition at the step.
   const std::vector<ConditionChange>& repeated_at(std::int64_t step);
 
  private:
   // Adds the condition that holds at a step.
   void add_holding(std::int64_t step, std::vector<ConditionChange>& changes) const;
 
-  std::vector<Event> initial_;  // the scene file's condition of what the events change
+  std::vector<Event> initial_;  // the scene file's values of what events change
   std::vector<Event> events_;   // by step
-  std::size_t next_ = 0;        // of events_, the first that has not taken effect
+  std::size_t next_ = 0;        // index in events_ of the first that has not taken effect
   std::vector<ConditionChange> announced_, repeated_;
 };
 

@@ -30,8 +30,8 @@ Vec6 turned(const Mat6& coriolis, double time, const Vec6& u) {
   return 2.0 * solve(Mat6::Identity() + half, u) - u;
 }
 
-// A matrix that dissipates the power force . u, if that is positive, and maps u to the force: the part along
-// u resists it equally in all directions, the part across u turns it.
+// Returns a matrix that maps u to the force and dissipates the power force . u if that is positive: the part
+// along u resists it equally in all directions, the part across u turns it.
 Mat6 dissipating(const Vec6& force, const Vec6& u) {
   const double square = u.squaredNorm();
   if (!(square > 0.0)) return Mat6::Zero();
@@ -41,7 +41,7 @@ Mat6 dissipating(const Vec6& force, const Vec6& u) {
   return along * Mat6::Identity() + outer - outer.transpose();
 }
 
-// The mean velocity of a screw that turns by this rotation vector [rad], in the axes of its start.
+// Returns the mean velocity of a screw with this rotation vector [rad], in the axes of its start.
 Vec3 screw_velocity(const Vec3& rotation, const Vec3& velocity) {
   const double angle = rotation.norm();
   const double square = angle * angle;
@@ -169,7 +169,7 @@ Mat6 HydrodynamicMotion::modal_damping(const Vec6& twist, const Vec3& current_B,
   damping += matrix_at(at_center, from_center);
   Mat6 modal = congruent(damping, N);
   if (!quadratic_drag_is_diagonal_) {
-    // Of a full matrix D2, D2 diag(|nu|) may drive some twist even where the drag of nu itself resists nu.
+    // A full matrix D2 may drive a twist by D2 diag(|nu|) even where the drag of nu itself resists nu.
     const Vec6 force = immersion_.drag * (drag->quadratic * at_drag.cwiseAbs().cwiseProduct(at_drag));
     modal += dissipating(N.transpose() * wrench_about(force, from_center),
                          modes_.modal(twist, immersion_.added_mass));

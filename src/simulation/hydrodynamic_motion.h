@@ -5,9 +5,9 @@
 //
 //   (M + s A) nu_dot = f - C(nu) nu - D(nu) nu,   D(nu) = s (D1 + D2 diag(|nu|)) + damping of [body.client]
 //
-// C is the Coriolis matrix of M + s A, which is skew-symmetric. f is what remains of the wrench of a response
-// when its drag and its Coriolis terms at the twist that was sent are subtracted, plus the weight: buoyancy,
-// and what waves add. In a step the maps K, D and X of integrator.h are replaced by
+// C is the Coriolis matrix of M + s A, which is skew-symmetric. f is the wrench of a response without its
+// drag and its Coriolis terms at the twist that was sent, plus the weight; it holds buoyancy and the load of
+// waves. In a step the maps K, D and X of integrator.h are replaced by
 //
 //   V(t): velocities, pose fixed. In modal velocities u (added_mass_modes.h), with C and D taken at the mean
 //         of the velocities before and after (three passes):  E(t/2) Q(t) E(t/2).
@@ -40,7 +40,7 @@ class HydrodynamicMotion {
   // body: has a hydrodynamic model; it must outlive this object.
   HydrodynamicMotion(const Body& body, const RigidBody& rigid, const Water& water, const Vec3& current_W);
 
-  // Replaces the rigid body, whose compartments or tanks have another condition from now on.
+  // Replaces the rigid body after a change of the condition of its compartments or tanks.
   void set_rigid_body(const RigidBody& rigid);
 
   // Takes the wrench of a response to the state that was sent, evaluated lead_time later in this water, and
@@ -48,15 +48,15 @@ class HydrodynamicMotion {
   void take(const BodyWrench& wrench, const BodyState& sent, double lead_time, const WaterState& water,
             RigidBodyState& state);
 
-  // As in integrator.h, with the wrench that was taken last. Preconditions: take() was called; finish_step()
-  // belongs to the last begin_step().
+  // These are as in integrator.h, with the wrench that was taken last. Preconditions: take() was called;
+  // finish_step() belongs to the last begin_step().
   void begin_step(Integrator integrator, double step, RigidBodyState& state);
   void finish_step(Integrator integrator, double step, RigidBodyState& state) const;
 
   // Kinetic energy of the water [J]: 1/2 nu . s A nu, at the immersion of the wrench that was taken last.
   double added_kinetic_energy(const RigidBodyState& state) const;
-  // The same at the immersion of the state's own pose in water at rest. nullopt: the solver's status is not
-  // kOk at this pose.
+  // The same at the immersion of the state's own pose in water at rest, or nullopt if the solver's status is
+  // not kOk at this pose.
   std::optional<double> added_kinetic_energy_at_pose(const RigidBodyState& state) const;
 
  private:
@@ -64,11 +64,11 @@ class HydrodynamicMotion {
     double drag = 0.0;
     double added_mass = 0.0;
   };
-  // displaced: [m^3], without what open compartments take from it; of these, the water at rest is taken.
+  // displaced: [m^3], net of the open compartments, whose flooded volume in water at rest is added here.
   Immersions immersions(double displaced, const Pose& pose) const;
   double added_kinetic_energy(const RigidBodyState& state, double immersion) const;
 
-  // Relative to water that has this velocity everywhere.
+  // The twist is relative to water that has this velocity everywhere.
   Vec6 relative_twist(const RigidBodyState& state, const Vec3& water_velocity_W) const;
   void set_relative_twist(const Vec6& twist, const Vec3& water_velocity_W, RigidBodyState& state) const;
   // N^T D N, with D at this twist; current_B: the current in B's axes.

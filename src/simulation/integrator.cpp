@@ -22,8 +22,8 @@ void drift(const RigidBody& body, double time, RigidBodyState& state) {
   integrate_free_rotation(body, time, state);
 }
 
-// Path length of a damped motion: the integral of s over `time` for ds/dt = -(linear + quadratic s) s /
-// inertia with s(0) = speed. The quadratic resistance depends on it.
+// Returns the path length of a damped motion, on which the quadratic resistance depends: the integral of s
+// over `time` for ds/dt = -(linear + quadratic s) s / inertia with s(0) = speed.
 double damped_path(const Damping& damping, double inertia, double speed, double time) {
   const double rate = damping.linear / inertia;
   const double linear_path = speed * (rate > 0.0 ? -std::expm1(-rate * time) / rate : time);
@@ -46,7 +46,7 @@ void damp_rotation(const RigidBody& body, double time, RigidBodyState& state) {
   const Vec3 w_P = momentum_P.cwiseQuotient(body.principal_inertia);
   const double speed_squared = w_P.squaredNorm();
   if (speed_squared == 0.0) return;
-  // Effective inertia of the initial decay of |w|: d|w|/dt = -(c + d |w|) |w| / inertia.
+  // The effective inertia of the initial decay of |w|: d|w|/dt = -(c + d |w|) |w| / inertia.
   const double inertia = speed_squared / w_P.cwiseProduct(w_P).cwiseQuotient(body.principal_inertia).sum();
   const double path = damped_path(damping, inertia, std::sqrt(speed_squared), time);
   const Vec3 decay =

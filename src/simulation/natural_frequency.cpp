@@ -45,7 +45,7 @@ struct AddedMass {
   ImmersionScaling scaling = ImmersionScaling::kVolume;
 };
 
-// What the water does to a body: with its compartments and tanks, if it has them.
+// Computes the hydrostatics of a body, with its compartments and tanks if it has them.
 class WaterplaneStiffness {
  public:
   WaterplaneStiffness(const HydrostaticMesh& mesh, const RigidBody& rigid, const Water& water)
@@ -57,7 +57,7 @@ class WaterplaneStiffness {
     if (body) loaded_ = *body;
   }
 
-  // About the centre of mass C, with what weights add to the stiffness. The volume is that of the hull.
+  // Returns values about C, the stiffness with that of weights, and the volume of the hull.
   std::optional<Hydrostatics> at(const Pose& pose) const {
     if (!rigid_->contents) {
       return hydrostatics(*mesh_, pose, *water_, rigid_->center_of_mass_B, std::nullopt);
@@ -91,7 +91,7 @@ double frequency_at(const WaterplaneStiffness& load, const HydrostaticMesh& mesh
     mass_B += s * added_mass->matrix_B;
   }
   const Mat6 K_B = rotated(result->stiffness, state.q_WB.conjugate().toRotationMatrix());
-  // A value that is not a number counts as 0.
+  // A NaN counts as 0.
   return std::sqrt(std::max(0.0, symmetric_eigen<6>(K_B, mass_B).values[5]));
 }
 
@@ -117,7 +117,7 @@ struct Extent {
   double max = 0.0;  // [m]
 };
 
-// Extent of the mesh along a direction, relative to the centre of mass.
+// Returns the extent of the mesh along a direction, relative to the centre of mass.
 Extent extent_along(const HydrostaticMesh& mesh, const RigidBody& rigid, const Vec3& up_B) {
   const double offset = up_B.dot(mesh.center_B - rigid.center_of_mass_B);
   return {offset + lowest_vertex(*mesh.tree, up_B), offset - lowest_vertex(*mesh.tree, -up_B)};

@@ -1,9 +1,9 @@
 // The highest natural frequency of a floating body, which the simulator's time step has to resolve.
 //
-// Small motions about a pose obey M x'' = -K x with M = diag(m, I) about the centre of mass, for a body with
-// added mass M = diag(m, I) + s A with the immersion of that pose, and K the hydrostatic stiffness about it
-// (hydrostatics/hydrostatics.h), less what open compartments take from it; weight adds nothing to K there,
-// but for the liquids in tanks (stiffness_of_weights()). The frequency of a pose is the square root of the
+// Small motions about a pose obey M x'' = -K x with M = diag(m, I) about the centre of mass, plus s A at the
+// immersion of that pose for a body with added mass, and K the hydrostatic stiffness about the same point
+// (hydrostatics/hydrostatics.h), less the part of open compartments. Weight adds nothing to K there, except
+// for that of liquids in tanks (stiffness_of_weights()). The frequency of a pose is the square root of the
 // largest eigenvalue of the symmetric part of M^-1/2 K M^-1/2, or 0 where no eigenvalue is positive. The
 // maximum is taken over the present pose and a sweep of others: 16 levels from the lowest to the highest
 // vertex, with up along the body's principal axes, their bisectors and the present up direction, as far as
@@ -25,7 +25,7 @@ struct HighestNaturalFrequency {
 // O(1).
 double natural_frequency_bound(const Body& body, const RigidBody& rigid, const Water& water);
 
-// Costs O(levels x directions) hydrostatic queries; a mesh without a tree is copied and its tree built first.
+// Complexity: O(levels x directions) hydrostatic queries, and a tree's construction for a mesh without one.
 HighestNaturalFrequency highest_natural_frequency(const Body& body, const RigidBody& rigid,
                                                   const RigidBodyState& state, const Water& water);
 

@@ -32,13 +32,13 @@ Vec3 angular_momentum_of(const RigidBody& body, const Eigen::Quaterniond& q_WB, 
   return q_WB * Vec3(body.principal_axes_B * body.principal_inertia.cwiseProduct(w_P));
 }
 
-// About C, with the liquids as they lie at the attitude.
+// Returns the weights about C, with the liquids as they lie at the attitude.
 Weights weights_at(const RigidBody& body, const BodyContents& contents, const Vec3& up_B) {
   const LiquidSum liquids = liquid_sum(contents.tanks, up_B, body.center_of_mass_B, FreeSurfaces::kNo);
   return weights_of(contents.own, liquids, body.center_of_mass_B);
 }
 
-// [J], potential of what the body weighs, with its liquids.
+// Returns the potential energy of the body's weight, liquids included [J].
 double weight_potential(const RigidBody& body, const RigidBodyState& state, const Water& water) {
   const double center_height = water.up_W.dot(state.center_W) - water.level;
   if (!body.contents) return body.mass * water.gravity * center_height;
@@ -47,8 +47,8 @@ double weight_potential(const RigidBody& body, const RigidBodyState& state, cons
   return water.gravity * (weights.mass * center_height + up_B.dot(weights.moment));
 }
 
-// Calls add(volume, point) for what each open compartment takes from the displaced volume: [m^3], and [m] its
-// centroid in B.
+// Calls add(volume, centroid_B) for the volume [m^3] that each open compartment takes from the displacement,
+// and its centroid in B [m].
 template <typename Add>
 void for_each_flooded(const RigidBody& body, const Pose& pose, const Water& water, const Add& add) {
   if (!body.contents) return;

@@ -5,8 +5,8 @@
 // while w = I_W^-1 L is not. Messages refer to B's origin and to the body's reference point r: the velocity
 // of B's origin is v - w x (R c), and tau about C = tau about r + (r - C) x F.
 //
-// The liquids in the tanks of a body are frozen in its mass, in C and in its inertia (scene/body_mass.h),
-// so that it falls with g. Their weight is part of the wrench, where they are at the present attitude; that
+// The mass, C and the inertia of a body include the liquids in its tanks as if frozen (scene/body_mass.h), so
+// that it falls with g. The weight of the liquids, at the present attitude, is part of the wrench; the weight
 // of the body without them acts at its own centre of mass, which is not C.
 #pragma once
 
@@ -31,11 +31,11 @@ struct Damping {
   double quadratic = 0.0;  // [N/(m/s)^2] or [N m/(rad/s)^2], >= 0
 };
 
-// What a body with compartments or tanks consists of beside its mesh.
+// The contents of a body with compartments or tanks.
 struct BodyContents {
   RigidBodyMass own;                     // without the liquids
   std::vector<Tank> tanks;               // their meshes are owned by the scene
-  std::vector<PlacedMesh> compartments;  // that are open to the sea; likewise
+  std::vector<PlacedMesh> compartments;  // open to the sea; the scene owns their meshes
 };
 
 struct RigidBody {
@@ -70,29 +70,29 @@ struct Load {
 Expected<RigidBody> make_rigid_body(const Body& body, const Water& water,
                                     const BodyCondition* condition = nullptr);
 
-// Gives a body with compartments or tanks another condition, its liquids frozen at the state's attitude. What
-// is added moves with the body, and what is taken out too: its velocities stay, those of C and the angular
-// momentum follow. body: of which rigid was made.
+// Gives a body with compartments or tanks another condition, its liquids frozen at the state's attitude. Mass
+// that is added or removed moves with the body: B's velocities stay, and those of C and the angular momentum
+// follow. body: the one that rigid was made from.
 void set_condition(const Body& body, const BodyCondition& condition, const Water& water, RigidBody& rigid,
                    RigidBodyState& state);
 
-// Initial state. [body.client] gives position and velocity of B's origin, `start` plays no part.
+// Returns the initial state. spec: position and velocity are those of B's origin; `start` is ignored.
 RigidBodyState initial_state(const RigidBody& body, const DynamicsSpec& spec);
 
 Vec3 angular_velocity_W(const RigidBody& body, const RigidBodyState& state);  // [rad/s]
 Pose pose_of(const RigidBody& body, const RigidBodyState& state);             // pose of B
-// [m], of the lowest vertex of a body's mesh over the level. O(vertices).
+// Returns the height of the mesh's lowest vertex over the level [m]. Complexity: O(vertices).
 double lowest_height(const HydrostaticMesh& mesh, const WaterPlane& plane);
 BodyState to_body_state(std::int32_t body_id, const RigidBody& body, const RigidBodyState& state);
 
-// Sum of the wrench of a response and the body's weight. The wrench must belong to the state's pose.
+// Returns the sum of a response's wrench and the body's weight. The wrench must belong to the state's pose.
 Load total_load(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
                 const Water& water);
 
 // Kinetic energy [J]: 1/2 m v^2 + 1/2 L . w.
 double kinetic_energy(const RigidBody& body, const RigidBodyState& state);
 
-// [m^3], by which the compartments that are open to the sea reduce what the body displaces at a pose in water
+// Returns the volume [m^3] by which the open compartments reduce what the body displaces at a pose in water
 // at rest.
 double flooded_volume(const RigidBody& body, const Pose& pose, const Water& water);
 
@@ -102,7 +102,7 @@ double flooded_volume(const RigidBody& body, const Pose& pose, const Water& wate
 // dV. With liquids in tanks, z_C is the height of the centre of mass of all at the present attitude.
 double mechanical_energy(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
                          const Water& water);
-// Same, with the wrench computed by the solver, for a state whose pose has no wrench yet. nullopt: the
+// The same, with the wrench computed by the solver, for a state whose pose has no wrench yet; nullopt if the
 // solver's status is not kOk at this pose.
 std::optional<double> mechanical_energy(const RigidBody& body, const RigidBodyState& state,
                                         const Solver& solver, const Water& water);

@@ -6,7 +6,7 @@ namespace buoyancy {
 namespace {
 
 constexpr std::chrono::milliseconds kFlushInterval{500};
-// Of the wrench; its error bounds and the id, which is that of the state, are not written.
+// The wrench is written without its error bounds and without the body's id, which the state has.
 constexpr FieldRange kWrenchFields{"status", "center_of_buoyancy"};
 
 void append_row(std::string& rows, std::int64_t utime, const SimulatedBody& body) {

@@ -29,10 +29,10 @@ class RunCsvWriter {
   // See RecordWriter.
   void give_up_after(int signal) { file_.give_up_after(signal); }
 
-  // Buffered for half a second at most, as long as steps are written. Errors: the file cannot be written,
-  // e.g. a full disk; it may concern an earlier row. The file then ends with a complete step.
+  // Writes the current step; rows are buffered for at most half a second of steps. Errors: the file cannot be
+  // written, e.g. a full disk, maybe for an earlier row. The file then ends with a complete step.
   Expected<void> write(const Simulation& simulation);
-  // Writes the buffered rows; the last ones are lost without it. Errors: as for write().
+  // Writes the buffered rows, the last of which are lost without this call. Errors: as for write().
   Expected<void> flush();
 
  private:

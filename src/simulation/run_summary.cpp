@@ -28,7 +28,7 @@ BodySummary summarize(const SimulatedBody& body, const Water& water) {
   const Vec3& up_B = plane.up_B;
   summary.roll = std::atan2(up_B.y(), up_B.z());
   summary.pitch = std::atan2(-up_B.x(), std::hypot(up_B.y(), up_B.z()));
-  // A body at rest has the kinetic energy of rounding, of which no share says anything.
+  // The kinetic energy of a body at rest is rounding error, relative to which no energy means anything.
   constexpr double kRounding = 1e-14;  // of m g L
   const EnergyStats& energy = body.energy;
   if (energy.max_kinetic > kRounding * body.rigid.mass * water.gravity * mesh.diagonal) {

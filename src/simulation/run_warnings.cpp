@@ -50,7 +50,7 @@ std::string subject(const SimulatedBody& body, int others) {
   return subject;
 }
 
-// [m], depth under the level of the lowest point of the body's mesh where that is below the bed, else
+// Returns the depth under the level of the lowest point of the body's mesh [m] if that is below the bed, else
 // nullopt.
 std::optional<double> depth_below_bed(const SimulatedBody& body, double bed, const Water& water) {
   const HydrostaticMesh& mesh = body.body->prepared_mesh->mesh;
@@ -164,12 +164,12 @@ std::optional<Warning> received_sea_warning(const Simulation& simulation) {
 }
 
 std::optional<Warning> energy_warning(const Simulation& simulation) {
-  if (simulation.has_waves()) return std::nullopt;  // they add energy
+  if (simulation.has_waves()) return std::nullopt;  // waves add energy
   const SimulatedBody* worst = nullptr;
   double worst_rise = 0.0;  // as a fraction of the largest kinetic energy
   int bodies = 0;
   for (const SimulatedBody& body : simulation.bodies()) {
-    if (simulation.has_current() && body.hydrodynamics) continue;  // likewise
+    if (simulation.has_current() && body.hydrodynamics) continue;  // the current adds energy
     const EnergyStats& energy = body.energy;
     const double rise = energy.max - energy.initial;
     const double noise =

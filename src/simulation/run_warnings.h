@@ -1,10 +1,10 @@
-// Warnings about runs whose results are not trustworthy although every single response is right. Each
-// Warning's subject is the worst affected body; none ends a run.
+// Warnings about runs whose results are not trustworthy although every single response is right. The subject
+// of each is the worst affected body; none of them ends a run.
 //
 // With w the body's highest natural frequency (natural_frequency.h) and h the step, both integrators are
-// stable while h w < 2, whatever the damping: its part of the step is exact. At h w = 0.5 the periods of
-// velocity_verlet are 1 % short and its energy oscillates by 6 %. A lead time that exceeds the delay of the
-// responses by T acts as a damping that is not exact: then sqrt(h (h + 4 T)) w must be below 2, for
+// stable while h w < 2, whatever the damping, since they integrate damping exactly. At h w = 0.5 the periods
+// of velocity_verlet are 1 % short and its energy oscillates by 6 %. A lead time that exceeds the delay of
+// the responses by T acts as a damping that is not exact: then sqrt(h (h + 4 T)) w must be below 2, or with
 // semi_implicit_euler sqrt(h (h + 2 T)) w.
 //
 // Responses that are late by a time d feed energy into the body at the rate w^2 d, with lead_time = d at
@@ -28,7 +28,7 @@ inline constexpr double kLatencyLimit = 0.1;    // of d w: warned about above th
 // natural_frequency_bound() does not rule that out.
 std::optional<Warning> step_warning(const Simulation& simulation);
 
-// Warns if responses with this delay [s], >= 0, are too late for a body in its present state. Same cost.
+// Warns, at the same cost, if responses with this delay [s], >= 0, are too late for a body's present state.
 std::optional<Warning> latency_warning(const Simulation& simulation, double delay);
 
 // Warns once about the response delay of a free-running simulation, when its mean over a second of simulated
@@ -52,12 +52,12 @@ class BedMonitor {
   std::vector<bool> warned_;  // by body of the simulation
 };
 
-// Warns if a body has added mass in a sea that is received, in whose waves its velocity is not known here.
+// Warns if a body has added mass in a received sea, since the velocity of its water is not known here.
 std::optional<Warning> received_sea_warning(const Simulation& simulation);
 
 // Warns if the mechanical energy of a body more than doubled: if it rose by more than half the largest
-// kinetic energy, and by more than rounding. Nothing in a scene without waves and current adds energy to a
-// body; with waves there is no warning, with a current none about bodies that have drag or added mass.
+// kinetic energy, and by more than rounding. Nothing in a scene without waves and current adds energy. With
+// waves there is no such warning; with a current there is none about bodies with drag or added mass.
 std::optional<Warning> energy_warning(const Simulation& simulation);
 
 }  // namespace buoyancy

@@ -41,7 +41,7 @@ void record_energy(SimulatedBody& body, bool first, bool wrench_is_current, cons
   energy.max_kinetic = std::max(energy.max_kinetic, kinetic);
 }
 
-// Of the highest waves that were measured at sea, for a sea that is received: [m], and [m/s] of its longest.
+// A received sea is taken for the highest waves measured at sea: their height [m] and largest speed [m/s].
 constexpr double kReceivedWaveHeight = 30.0;
 constexpr double kReceivedWaveSpeed = 50.0;
 

@@ -1,9 +1,9 @@
 // Rigid-body simulation of the bodies of a scene that have a [body.client].
 //
 // Each step sends one request, for the poses at the step's end; its response completes the step and starts
-// the next one. Step n is at the time n h exactly (no accumulated sum), utime is that time in microseconds,
-// and seq is n. No value of a request depends on a clock, so the same scene gives the same bytes in every
-// run.
+// the next one. Step n is at the time n h exactly (not an accumulated sum), utime is that time in
+// microseconds, and seq is n. No value of a request depends on a clock, so the same scene gives the same
+// bytes in every run.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,8 @@ struct SimulationOptions {
 
 // Mechanical energy [J] over the run (rigid_body.h), with the kinetic energy of added mass, computed for the
 // present poses whatever the delay of their wrenches. It is conserved only without damping and drag, in water
-// at rest and with wrenches that are not late. An event of the scene changes it: all of these begin anew with
-// the response to the first request after an event of the body.
+// at rest and with wrenches that are not late. An event of the scene changes it, so the values begin anew
+// with the response to the first request after an event of the body.
 struct EnergyStats {
   double initial = 0.0;
   double current = 0.0;
@@ -43,7 +43,7 @@ struct EnergyStats {
   double available = 0.0;
 };
 
-// Of the available energy: beyond it, a motion is none that the scene can cause.
+// A rise by more than this multiple of the available energy has no cause in the scene: the motion diverged.
 inline constexpr double kEnergyLimit = 10.0;
 
 struct SimulatedBody {
@@ -53,7 +53,7 @@ struct SimulatedBody {
   BodyWrench wrench;                                  // in use
   std::unique_ptr<HydrodynamicMotion> hydrodynamics;  // of a body with drag or added mass
   BodyCondition condition;                            // of its compartments and tanks
-  bool condition_changed = false;                     // in the step whose response is next
+  bool condition_changed = false;                     // by an event of the present step
   EnergyStats energy;
 };
 
@@ -87,13 +87,13 @@ class Simulation {
   double delay() const { return delay_; }  // [s], age of the wrenches in use
   const std::vector<SimulatedBody>& bodies() const { return bodies_; }
   const Water& water() const { return water_; }
-  // Does the scene have waves? They do work on the bodies: the mechanical energy is that in water at rest.
+  // True if the scene has waves. They do work on the bodies; the mechanical energy is that in water at rest.
   bool has_waves() const { return has_waves_; }
-  // [m], of the sea bed under the level. Infinite: deep water, or a sea that is received.
+  // [m], depth of the sea bed under the level; infinite in deep water and in a received sea.
   double depth() const { return depth_; }
-  // Are the waves received by the service? Then the water's velocity in them is not known here.
+  // True if the service receives the waves. The water's velocity in them is then not known here.
   bool receives_sea() const { return receives_sea_; }
-  // Does the scene have a current? It does work on the bodies with drag or added mass.
+  // True if the scene has a current, which does work on the bodies with drag or added mass.
   bool has_current() const { return current_W_ != Vec3::Zero(); }
   const SimulationOptions& options() const { return options_; }
 
@@ -112,8 +112,8 @@ class Simulation {
   double depth_ = 0.0;              // [m]
   double wave_height_ = 0.0;        // [m], from the deepest trough to the highest crest
   double wave_speed_ = 0.0;         // [m/s], of the fastest component
-  WaterAtTime waters_;              // of the scene; nothing is known of a sea that is received
-  bool has_hydrodynamics_ = false;  // does a simulated body have drag or added mass?
+  WaterAtTime waters_;              // of the scene, without waves that are received
+  bool has_hydrodynamics_ = false;  // true if a simulated body has drag or added mass
   SimulationOptions options_;
   ConditionSchedule conditions_;
   std::vector<SimulatedBody> bodies_;
@@ -121,17 +121,17 @@ class Simulation {
   bool in_step_ = false;   // between advance() and accept()
   WrenchRequest request_;  // reused
   double delay_ = 0.0;
-  // Ring buffer of the last delay_steps + 1 responses, step n at n modulo its size; empty without a delay.
+  // The last delay_steps + 1 responses as a ring buffer, step n at n modulo its size; empty without a delay.
   std::vector<WrenchResponse> delay_line_;
-  // The requests since that of the response in use, if a body has drag or added mass.
+  // The requests from that of the response in use on, if a body has drag or added mass.
   std::deque<WrenchRequest> sent_;
 };
 
 enum class RunOutcome { kCompleted, kInterrupted };
 
-// Runs `steps` steps, or until is_stopped returns true, which is asked in every step. Calls after_step at the
-// start and after every step, also after the one whose wrenches end the run, but never with a state that is
-// not finite and a wrench that is OK. An error that after_step returns ends the run.
+// Runs `steps` steps, or until is_stopped(), called in every step, returns true. Calls after_step at the
+// start and after every step, even the one whose wrenches end the run, but never with a state that is not
+// finite and a wrench that is OK. An error of after_step ends the run.
 Expected<RunOutcome> run(Simulation& simulation, SimulationClient& client, std::int64_t steps,
                          const std::function<bool()>& is_stopped,
                          const std::function<Expected<void>(const Simulation&)>& after_step);

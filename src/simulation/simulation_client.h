@@ -19,9 +19,9 @@ class InProcessClient {
 
   Expected<const WrenchResponse*> request(const WrenchRequest& request);
   const ClientStats& statistics() const { return statistics_; }
-  const Warning* scene_warning() const { return nullptr; }  // it has the scene
+  const Warning* scene_warning() const { return nullptr; }  // it uses the scene itself
 
-  // See RequestHandler::receive_condition(). Nothing is lost here: `repeated` plays no part.
+  // See RequestHandler::receive_condition(). No message is lost in a process, so `repeated` is ignored.
   void set_conditions(std::span<const ConditionChange> announced, std::span<const ConditionChange> repeated);
 
  private:
@@ -36,7 +36,7 @@ using SimulationClient = std::variant<InProcessClient, LockstepClient, FreeRunni
 // The response holds as many bodies as the request, in the same order, and is valid until the next call.
 // Errors: those of the client in use.
 Expected<const WrenchResponse*> request(SimulationClient& client, const WrenchRequest& request);
-// What is sent with the next request, and with every repetition of it: see LcmRequestChannel.
+// Sets what is sent with the next request, and with every retry of it: see LcmRequestChannel.
 void set_conditions(SimulationClient& client, std::span<const ConditionChange> announced,
                     std::span<const ConditionChange> repeated);
 ClientStats statistics(const SimulationClient& client);
