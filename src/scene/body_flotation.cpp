@@ -18,10 +18,10 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kNoLever = 1e-6;   // over the body's reach: rounding, or that of a generated mesh
-constexpr double kStays = 1e-3;     // [rad]
+constexpr double kNoLever = 1e-6;   // over the body's reach: no more is rounding, also of generated meshes
+constexpr double kStays = 1e-3;     // [rad]: a smaller turn counts as none
 constexpr double kSameTurn = 1e-4;  // [rad], between an attitude and the same one found from another start
-constexpr std::size_t kMinVertices = 2'000;  // as which a mesh counts: the search has a cost of its own
+constexpr std::size_t kMinVertices = 2'000;  // a smaller mesh counts as this many: a search has a fixed cost
 
 double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -39,8 +39,8 @@ bool is_balanced(const FloatingBody& body, const Eigen::Quaterniond& q_WB, const
   return afloat && afloat->state.torque_W.norm() <= kNoLever * weight * body.reach();
 }
 
-// Puts the equilibrium that the body reaches among its attitudes, in the place of the same one found from
-// another start; of a family of attitudes, in the place of its first member.
+// Inserts the equilibrium that the body reaches into its attitudes, by energy, and returns its index. It
+// replaces the same attitude found from another start, or the first member of the same family.
 std::size_t merge_reached(const Equilibrium& reached, const Water& water,
                           std::vector<Equilibrium>& attitudes) {
   const Vec3 up_B = up_B_of(reached, water);

@@ -1,4 +1,4 @@
-// What the bodies of a scene have in common whose motions or attitudes are computed once.
+// Keys that identify equal bodies of a scene, so that their motions and attitudes are computed only once.
 #pragma once
 
 #include <map>
@@ -8,7 +8,7 @@
 
 namespace buoyancy {
 
-// Numbers that decide a result; bodies with equal keys share it.
+// The numbers on which a result depends: bodies with equal keys share it.
 using BodyKey = std::vector<double>;
 
 template <typename Derived>
@@ -18,15 +18,15 @@ void append(const Eigen::MatrixBase<Derived>& matrix, BodyKey& key) {
   }
 }
 
-// Of a unit vector: equal within some 1e-12, so that bodies of any heading share what depends on up alone.
+// Appends a unit vector, rounded to 1e-12: bodies of any heading then share what depends on up alone.
 void append_direction(const Vec3& direction, BodyKey& key);
 
-// Keys of the bodies of one scene, which outlives it.
+// Makes the keys of the bodies of one scene, which must outlive this object.
 class BodyKeys {
  public:
   explicit BodyKeys(const Scene& scene);
 
-  // Of what floats: mesh, mass, compartments and tanks as in the scene file.
+  // Returns the mesh, the mass, and the compartments and tanks as in the scene file.
   BodyKey floating(const Body& body, const RigidBodyMass& own) const;
 
  private:

@@ -49,7 +49,7 @@ Mat3 frozen_inertia(const BodyTank& tank, const Tank& filled, const TankLiquid& 
   return inertia_from(second_moments * (filled.liquid_volume / volume));
 }
 
-// [kg m^2], that a mass at this distance from a point adds to the inertia about it.
+// Returns the inertia [kg m^2] of a point mass at this distance.
 Mat3 inertia_of_point(double mass, const Vec3& distance) {
   return inertia_from(mass * distance * distance.transpose());
 }

@@ -119,7 +119,7 @@ class MotionMatrices {
   Vec6 given_twist_B_ = Vec6::Zero();
 };
 
-// [N/m], rounding error of the stiffness of heave; times a lever or its square, of the others.
+// Returns the rounding error [N/m] of the heave stiffness. A lever or its square scales it to rotations.
 double stiffness_error(const HydrostaticMesh& mesh, const Water& water) {
   return 64.0 * kEpsilon * water.density * water.gravity * mesh.area;
 }
@@ -160,7 +160,7 @@ class LoadedBody {
     return sum;
   }
 
-  // About the centre of mass. q_WB: unit.
+  // Finds the pose at which the body floats. The stiffness is about the centre of mass. q_WB: unit.
   std::optional<FloatingPose> afloat(const Eigen::Quaterniond& q_WB, const Water& water) const {
     std::vector<PlacedMesh> meshes = compartments_;
     meshes.insert(meshes.begin(), {.mesh = mesh_});
@@ -201,7 +201,7 @@ class LoadedBody {
   std::vector<PlacedMesh> compartments_;
 };
 
-// coordinate: of x that gives the motion its name. Stiffness within its rounding error counts as none.
+// coordinate: the index in the mode's shape that names it. A stiffness within its rounding error is none.
 NaturalMotion natural_motion(const MotionMatrices& matrices, const State& state, const MotionMode& mode,
                              Eigen::Index coordinate, double amplitude, double lever, double error) {
   const double size = mode.shape.head<3>().norm() + lever * mode.shape.tail<3>().norm();
@@ -232,7 +232,7 @@ std::optional<NaturalMotions> natural_motions(const MotionMatrices& matrices, co
                         .pitch = motion(modes->pitch, 4, kRotationAmplitude)};
 }
 
-// Along up, fully submerged. force: [N], buoyancy less weight.
+// Returns the velocity [m/s] along up of a submerged body whose buoyancy less its weight is `force` [N].
 std::optional<double> terminal_velocity_of(const Body& body, const Vec3& up_B, double force) {
   if (force == 0.0) return 0.0;
   if (body.hydrodynamics == nullptr || !body.hydrodynamics->coefficients().drag) return std::nullopt;

@@ -1,16 +1,16 @@
-// How a body moves in water at rest: where it floats, how fast it sinks or rises, its natural periods, and
-// the largest step of an explicit integrator.
+// Computes how a body moves in water at rest: where it floats, how fast it sinks or rises, its natural
+// periods, and the largest step of an explicit integrator.
 //
 // All of it is for the attitude at which a simulation of the body starts (start_pose.h), and for the
 // condition of compartments and tanks in the scene file: the liquids in the tanks are frozen as they lie
-// there, but for their free surfaces, which take from K. The axes are E = (e1, e2, up), with e1 the body's x
+// there, but for their free surfaces, which reduce K. The axes are E = (e1, e2, up), with e1 the body's x
 // axis projected on the horizontal plane (its y axis where |up . x| > 0.9) and e2 = up x e1: heave is along
 // up, roll about e1, pitch about e2, about the centre of mass C. M is the mass and the inertia about C, s A
 // the added mass about C with s of the present immersion, D = s (D1 + 2 D2 diag(|nu|)) the damping, K the
 // hydrostatic stiffness about C (hydrostatics/hydrostatics.h), to which weight adds nothing.
 //
-// The drag is that of [body.drag] alone: the damping keys of [body.client] are not the water's. Formulas:
-// hydrodynamics/small_motions.h and docs/mathematics.md, "Small motions".
+// The drag is that of [body.drag] alone: the damping keys of [body.client] do not describe the water. The
+// formulas are in hydrodynamics/small_motions.h and docs/mathematics.md, "Small motions".
 #pragma once
 
 #include <cstddef>
@@ -54,16 +54,16 @@ struct BodyMotions {
   std::optional<double> draft;  // [m], where the body floats
   // [m], horizontal distance of the centre of buoyancy from C there: above 0, the body turns.
   double turning_lever = 0.0;
-  // Where it floats; of a body that does not, fully submerged. Unset: neither is known.
+  // The motions of the body afloat or, if it does not float, fully submerged; unset if neither is known.
   std::optional<NaturalMotions> natural;
 
-  // Fully submerged, along up: above 0 rising, below 0 sinking. Moving along up without turning, drag and
-  // weight less buoyancy in balance; to rounding. 0: neutrally buoyant. Unset: without drag along up, or of
-  // an open mesh.
+  // The velocity along up at which the drag on the fully submerged body, which does not turn, balances weight
+  // less buoyancy, to rounding. It is above 0 for a body that rises, below 0 for one that sinks, and 0 for a
+  // neutrally buoyant one; unset without drag along up, and for an open mesh.
   std::optional<double> terminal_velocity;  // [m/s]
 
-  // [s], see max_explicit_step(): the smallest of the body afloat and fully submerged, each at the velocity
-  // of [body.client] relative to the current, and fully submerged at its terminal velocity. Infinity: none.
+  // [s], the smallest max_explicit_step() of the body afloat and fully submerged at the velocity of
+  // [body.client] relative to the current, and fully submerged at its terminal velocity. Infinity: no limit.
   double max_explicit_step = 0.0;
   StepLimit step_limit = StepLimit::kNone;
 
@@ -82,8 +82,8 @@ struct MotionsOfBody {
   bool left_out = false;                       // not computed, because of max_vertices; null then, too
 };
 
-// One element per body of the scene, in its order. Equal bodies share their motions. Those that differ are
-// computed as long as their meshes have at most max_vertices together, each counted as often as it is used.
+// Returns one element per body, in the order of the scene; equal bodies share one. Distinct bodies are
+// computed as long as their meshes have at most max_vertices in total, once per distinct body.
 std::vector<MotionsOfBody> scene_motions(const Scene& scene, std::size_t max_vertices = 100'000'000);
 
 }  // namespace buoyancy

@@ -1,4 +1,4 @@
-// Internal to the warnings about scenes: a warning about equal bodies appears once.
+// Internal to the warnings about scenes: merges equal warnings about several bodies.
 #pragma once
 
 #include <cstdint>

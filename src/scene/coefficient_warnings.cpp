@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<std::string_view, 6> kAxes{"x", "y", "z", "about x", "about y", "about z"};
 
-// Searches matrices that it has searched before only once.
+// Finds driving twists, and searches equal matrices only once.
 class DrivingTwists {
  public:
   std::optional<Vec6> find(const Mat6& quadratic) {
@@ -46,7 +46,7 @@ void warn_of_driving_drag(const Body& body, const Mat6& quadratic, DrivingTwists
             "Reduce them, or leave them out: energy may grow without a bound at such motions"});
 }
 
-// Is the centre farther from the box of the mesh than the mesh is large?
+// Warns if the centre is farther from the bounding box of the mesh than the length of the box's diagonal.
 void warn_of_far_center(const Body& body, std::string_view table, const Vec3& center_B,
                         BodyWarningList& list) {
   const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
@@ -79,8 +79,8 @@ void warn_of_size(const Body& body, const std::string& name, const Mat6& matrix,
   }
 }
 
-// In numbers of a sphere around the mesh, and of 100 times the displaced water: a thin plate exceeds the
-// latter.
+// The limit is 100 times the displaced water or, since a thin plate exceeds that, the water in a cube whose
+// edge is the mesh's diagonal.
 void warn_of_added_mass(const Body& body, const Mat6& matrix, const Water& water, BodyWarningList& list) {
   const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
   const double L = mesh.diagonal;
@@ -91,7 +91,7 @@ void warn_of_added_mass(const Body& body, const Mat6& matrix, const Water& water
                "at most 100 times the displaced water", list);
 }
 
-// A drag coefficient of 100 on the whole surface.
+// The limit is a drag coefficient of 100 on the whole surface.
 void warn_of_quadratic_drag(const Body& body, const Mat6& matrix, const Water& water, BodyWarningList& list) {
   const HydrostaticMesh& mesh = body.prepared_mesh->mesh;
   const double L = mesh.diagonal;

@@ -8,11 +8,11 @@
 
 namespace buoyancy {
 
-// The full quadratic drag matrices of a scene that are searched for twists that they drive: each search takes
-// milliseconds.
+// How many full quadratic drag matrices of a scene are searched for twists that they drive, at most: each
+// search takes milliseconds.
 inline constexpr std::size_t kMaxSearchedMatrices = 256;
 
-// In the order of the bodies; a warning that applies to several bodies alike appears once and counts them.
+// Warns in the order of the bodies. A warning that applies to several of them appears once and counts them.
 std::vector<Warning> coefficient_warnings(const Scene& scene);
 
 }  // namespace buoyancy

@@ -1,4 +1,4 @@
-// The bodies of a scene as what floats: their meshes and compartments, tanks and masses.
+// Makes a FloatingBody of a scene's body from its mesh, compartments, tanks and mass.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace buoyancy {
 
-// The compartments that are open to the sea, and the tanks, of a body. condition: of them; nullptr: that of
-// the scene file. The scene outlives the result.
+// Return the compartments of a body that are open to the sea, and its tanks. condition: of both; nullptr:
+// that of the scene file. The scene must outlive the result.
 std::vector<PlacedMesh> open_compartments(const Body& body, const BodyCondition* condition = nullptr);
 std::vector<Tank> tanks_of(const Body& body, const BodyCondition* condition = nullptr);
 
-// mesh: the body's, with its tree; it outlives the result, and so does the scene. mass: without the liquids
+// mesh: the body's, with its tree; it and the scene must outlive the result. mass: without the liquids
 // in its tanks. condition: of its compartments and tanks; nullptr: that of the scene file. Errors: those of
 // FloatingBody::make().
 Expected<FloatingBody> floating_body_of(const Body& body, const HydrostaticMesh& mesh,

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxLines = 12;
 
-// What is 0 but for rounding is 0.
+// Replaces a value that is only rounding noise by 0.
 double without_noise(double value, double noise) {
   return std::abs(value) < noise ? 0.0 : value;
 }

@@ -17,11 +17,11 @@ namespace {
 constexpr double kMinDensity = 20.0;
 constexpr double kMaxDensity = 20'000.0;
 
-// Factors from the units that mesh files are in, and back.
+// Factors from common units of mesh files to metres, and back.
 constexpr std::array<double, 8> kUnits{0.001,        0.01,         0.0254, 0.3048,
                                        1.0 / 0.3048, 1.0 / 0.0254, 100.0,  1000.0};
 
-// The unit that makes this density [kg/m^3] most like that of a floating body; 0 if none does.
+// Returns the scale that makes this density [kg/m^3] most like a floating body's; 0 if none is plausible.
 double plausible_scale(double density) {
   constexpr double kUsual = 700.0;
   const auto of = [density](double scale) { return density / (scale * scale * scale); };

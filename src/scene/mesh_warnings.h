@@ -9,8 +9,8 @@
 
 namespace buoyancy {
 
-// Of up_axis_warnings() with this check, then of bodies larger than 1 km, and of those whose [body.client]
-// gives a density that nothing has, or a mass that over the volume of the mesh is one, with the scale that
+// Returns up_axis_warnings() with this check, then warns about bodies larger than 1 km, and about those whose
+// density in [body.client], or whose mass over the volume of the mesh, is implausible, with the scale that
 // would make it plausible. A warning about equal bodies appears once.
 std::vector<Warning> mesh_warnings(const Scene& scene, const UpAxisCheck& up = {});
 

@@ -7,7 +7,7 @@
 namespace buoyancy {
 namespace {
 
-// A lever within this part of the mesh's diagonal is rounding, or that of a generated mesh.
+// A lever within this fraction of the mesh's diagonal is only rounding, also of generated meshes.
 constexpr double kNoLever = 1e-6;
 
 std::string_view to_string(ImmersionScaling scaling) {
@@ -55,7 +55,7 @@ std::string_view to_string(StepLimit limit) {
   return "none";
 }
 
-// As in the scene file: six numbers of a diagonal matrix, or 36 row by row. words: where the text shows it.
+// Adds a matrix as the scene file has it: six numbers if diagonal, else 36 row by row. words: its format.
 void add_matrix(std::string_view key, const Mat6& matrix, std::string_view words, Facts& facts) {
   const bool is_diagonal = matrix == Mat6(matrix.diagonal().asDiagonal());
   const Vec6 diagonal = matrix.diagonal();
@@ -156,7 +156,7 @@ Facts motion_facts(const BodyMotions& motions, const Body& body) {
   return facts;
 }
 
-// Empty for a body to which they do not apply.
+// Returns why the motions of a body are unknown; empty where the report says nothing about them.
 std::string why_unknown(const MotionsOfBody& entry, const Body& body, const Water& water) {
   if (!body.dynamics.given) {
     return body.hydrodynamics == nullptr ? "" : "unknown: no mass in [body.client]";

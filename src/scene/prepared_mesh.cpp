@@ -49,7 +49,7 @@ void append(const MeshReport& report, MeshReport& all) {
   all.components.insert(all.components.end(), report.components.begin(), report.components.end());
 }
 
-// The others sum volumes under a plane water surface.
+// The other methods sum volumes under a plane water surface.
 bool works_in_waves(Method method) {
   return method == Method::kHierarchical || method == Method::kFastSurface || method == Method::kExactSurface;
 }

@@ -26,7 +26,7 @@ struct MeshPreparation {
   ValidationOptions validation;
 };
 
-// One per source and preparation.
+// A mesh ready for queries. A scene has one per source and preparation.
 struct PreparedMesh {
   MeshReport report;
   HydrostaticMesh mesh;
@@ -40,19 +40,19 @@ struct PreparedMesh {
 MeshValidation validate_mesh(ImportedMesh imported, const std::string& name,
                              const MeshPreparation& preparation);
 
-// Validates the mesh and prepares it; without a moment tree. Errors: those of validation. refused: set to the
+// Validates the mesh and prepares it, without a moment tree. Errors: those of validation. refused: set to the
 // report of a mesh that is refused, unless nullptr. Complexity: O(n log n).
 Expected<PreparedMesh> prepare_mesh(ImportedMesh imported, const std::string& name,
                                     const MeshPreparation& preparation, MeshReport* refused = nullptr);
 
-// All triangles of closed meshes as one mesh, as they are: where meshes overlap, their volume counts as often
-// as they do. Its report is the sum of theirs. Precondition: at least one mesh. Complexity: O(n log n).
+// Returns all triangles of closed meshes as one mesh: where meshes overlap, the common volume counts for each
+// of them. Its report is the sum of theirs. Precondition: at least one mesh. Complexity: O(n log n).
 PreparedMesh merge_meshes(std::span<const PreparedMesh* const> meshes);
 
-// What makes a method or a tolerance unusable in waves. subject: of the error.
+// Returns an error if the method or the tolerance cannot be used in waves. subject: of the error.
 std::optional<Error> method_error_in_waves(const std::string& subject, Method method, double tolerance);
 
-// Whether a mesh is too small or too large for the float32 numbers of wave loads. name: of the mesh.
+// Returns an error if the mesh is too small or too large for the float32 numbers of wave loads.
 std::optional<Error> size_error_in_waves(const std::string& name, const HydrostaticMesh& mesh);
 
 }  // namespace buoyancy

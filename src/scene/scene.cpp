@@ -46,7 +46,7 @@ Expected<std::shared_ptr<const PreparedSea>> make_sea(const SceneDescription& sc
   return std::make_shared<const PreparedSea>(*std::move(sea));
 }
 
-// Of a body's description, or of the coefficients made from it.
+// given: the description of a body, or the coefficients made from it.
 template <typename DragAndAddedMass>
 bool scales_with_wetted_area(const DragAndAddedMass& given) {
   const auto by_area = [](const auto& table) {
@@ -55,7 +55,7 @@ bool scales_with_wetted_area(const DragAndAddedMass& given) {
   return by_area(given.drag) || by_area(given.added_mass);
 }
 
-// What of a body's description needs water at rest.
+// Returns an error if the description of a body needs water at rest.
 std::optional<Error> error_in_waves(const BodyDescription& body) {
   const std::string subject =
       (body.source_location.empty() ? "" : body.source_location + ": ") + "body " + std::to_string(body.id);

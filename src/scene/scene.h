@@ -41,14 +41,14 @@ struct Body {
   Vec3 reference_B = Vec3::Zero();  // torque reference point [m]
   bool hydrostatics = false;        // requested; the mesh then has a moment tree
   bool loads = false;               // requested
-  // Of a body with drag or added mass, else nullptr; owned by the scene, and shared by equal bodies. A body
-  // whose coefficients scale with the wetted area has a mesh with a moment tree.
+  // nullptr without drag and added mass; owned by the scene, and shared by equal bodies. A body whose
+  // coefficients scale with the wetted area has a mesh with a moment tree.
   const HydrodynamicModel* hydrodynamics = nullptr;
   // [m]; see given_center_of_mass() (body_mass.h).
   std::optional<Vec3> center_of_mass_B;
   DynamicsSpec dynamics;  // section [body.client]
-  // Of a body with parts, compartments or tanks, else nullptr; owned by the scene. The parts begin with the
-  // body's own mesh, if it has one.
+  // nullptr without parts, or without compartments and tanks; owned by the scene. The parts of a body begin
+  // with the body's own mesh, if it has one.
   const std::vector<BodyPart>* parts = nullptr;
   const Subdivision* subdivision = nullptr;
 };
@@ -87,7 +87,7 @@ class Scene {
   std::uint64_t text_fingerprint() const { return text_fingerprint_; }  // of its SceneDescription
   std::size_t bodies_with_hydrostatics() const { return bodies_with_hydrostatics_; }
   std::size_t bodies_with_loads() const { return bodies_with_loads_; }  // that request this output
-  // With drag or added mass, whose wrenches depend on their velocities.
+  // The bodies with drag or added mass, whose wrenches depend on their velocities.
   std::size_t bodies_with_hydrodynamics() const { return bodies_with_hydrodynamics_; }
   std::size_t bodies_with_subdivision() const { return subdivisions_.size(); }  // with compartments or tanks
 

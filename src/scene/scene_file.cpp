@@ -111,7 +111,7 @@ void read_start(TomlTable& table, DynamicsSpec& dynamics) {
   }
 }
 
-// body: read but for this section.
+// body: already read, except for this section.
 void read_dynamics(TomlTable table, const std::string& body_name, SceneParseContext& context,
                    BodyDescription& body) {
   DynamicsSpec& dynamics = body.dynamics;
@@ -228,7 +228,7 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const Wat
   }
   const Vec3 up_B = body.dynamics.orientation.conjugate() * water.up_W;
   for_each_mesh(body, [&up_B](MeshDescription& mesh, auto&&...) {
-    // Bodies whose rims stay where they are share a mesh whatever their orientation.
+    // Only a freeboard depends on up: without one, bodies share a mesh whatever their orientation.
     if (mesh.repair.closing.freeboard > 0.0) mesh.repair.closing.up_B = up_B;
   });
   return body;

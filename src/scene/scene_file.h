@@ -132,7 +132,7 @@ struct BodyDescription {
   OpenPolicy open = OpenPolicy::kRefuse;
   Vec3 reference_B = Vec3::Zero();  // torque reference point [m]
   bool hydrostatics = false;        // requested by `outputs`, in addition to the wrench
-  bool loads = false;               // likewise
+  bool loads = false;               // requested by `outputs`
   std::optional<DragDescription> drag;
   std::optional<AddedMassDescription> added_mass;
   DynamicsSpec dynamics;        // section [body.client]
@@ -162,7 +162,7 @@ struct SceneDescription {
   Water water;
   SeaDescription sea;           // without wave systems: water at rest, or with a current
   bool waves_received = false;  // waves = "received": the sea comes in messages, `sea` has the current alone
-  // Of what the text states besides [body.client], the names of files and comments; 0: not from a text.
+  // A hash of what the text states besides [body.client], names of files and comments; 0 without a text.
   std::uint64_t text_fingerprint = 0;
   std::string water_location;  // of [water]: "scene.toml:3", for errors; empty without it
   ImportLimits limits;
@@ -178,8 +178,8 @@ Expected<SceneDescription> read_scene_file(const std::filesystem::path& path);
 Expected<SceneDescription> parse_scene(std::string_view text, const std::string& name,
                                        const std::filesystem::path& directory);
 
-// Parses the sections [world] and [water] of a scene, the only ones that the text may have: a description
-// without bodies.
+// Parses a text that may only have the sections [world] and [water] of a scene. Returns a description without
+// bodies.
 Expected<SceneDescription> parse_water(std::string_view text, const std::string& name,
                                        const std::filesystem::path& directory);
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-// Without the library, which users of the installed libraries would have to link.
+// Inlined, since users of the installed libraries would have to link the xxHash library otherwise.
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -39,7 +39,7 @@ class Hash {
 
 void add_node(Hash& hash, const toml::node& node);
 
-// What names a file is left out: the content counts.
+// Leaves out [body.client], and the names of files, whose content counts.
 void add_table(Hash& hash, const toml::table& table) {
   for (const auto& [key, value] : table) {  // sorted
     if (key == "client" || key == "mesh" || key == "file") continue;

@@ -1,4 +1,4 @@
-// A number by which programs notice that they have loaded different scenes.
+// A hash by which programs notice that they have loaded different scenes.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace buoyancy {
 
-// Equal for scenes whose bodies get the same wrenches: of the meshes as prepared, of the components of the
-// waves, and of everything that the scene file states besides [body.client], the names of mesh files and
-// comments. The order of keys, and a whole number in the place of a real one, make no difference; a default
-// that is written down does. It detects mistakes, not forgery. Complexity: O(scene), some GB/s.
+// Hashes what decides the wrenches of a scene's bodies: the meshes as prepared, the components of the waves,
+// and everything that the scene file states besides [body.client], the names of mesh files and comments. The
+// order of keys, and a whole number in the place of a real one, make no difference; a default that is written
+// down does. It detects mistakes, not forgery. Complexity: O(scene), some GB/s.
 std::int64_t scene_fingerprint(const Scene& scene);
 
 }  // namespace buoyancy

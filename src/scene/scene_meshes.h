@@ -11,13 +11,13 @@
 
 namespace buoyancy {
 
-// Who needs a mesh, for errors.
+// Identifies in errors what needs a mesh.
 struct MeshUser {
   std::string source_location;  // "scene.toml:12"; empty without a scene file
   std::string name;             // "body 3", "body 3, tank 'ballast 1'"
   bool may_be_open = true;      // the user may accept an open mesh
 
-  // The error with the user before its subject.
+  // Returns the error with the user before its subject.
   Error error(Error error) const;
 };
 
@@ -31,8 +31,8 @@ class SceneMeshes {
   Expected<PreparedMesh*> find_or_prepare(const MeshDescription& mesh, OpenPolicy open, const MeshUser& user,
                                           MeshReport* refused = nullptr);
 
-  // All of these meshes as one; meshes that overlap count twice where they do. Precondition: they are from
-  // this object and closed.
+  // Returns all of these meshes as one, see merge_meshes(). Precondition: they are from this object and
+  // closed.
   PreparedMesh* find_or_merge(const std::vector<const PreparedMesh*>& meshes);
 
   std::vector<std::unique_ptr<PreparedMesh>> release() { return std::move(meshes_); }

@@ -85,7 +85,7 @@ double shortest_wavelength(const Sea& sea) {
   return 2.0 * std::numbers::pi / sea.max_wave_number();
 }
 
-// What repeats when is said by the caller.
+// The caller adds the text about when the waves repeat.
 Facts system_facts(const WaveSystemReport& system, double repeat_time) {
   const bool is_regular = system.type == "regular";
   const bool is_components = system.type == "components";
@@ -115,7 +115,7 @@ Facts system_facts(const WaveSystemReport& system, double repeat_time) {
   return facts;
 }
 
-// [s], of each system.
+// Returns the repeat time [s] of each system.
 std::vector<double> repeat_times(const Sea& sea, const std::vector<WaveSystemReport>& systems) {
   std::vector<double> times;
   std::span<const WaveComponent> rest = sea.components();

@@ -12,10 +12,10 @@
 namespace buoyancy {
 
 struct SceneReportOptions {
-  // How the bodies with [body.client] move, see body_motions.h. Takes seconds for 10,000 large bodies that
-  // all differ.
+  // Report how the bodies with [body.client] move, see body_motions.h. This takes seconds for 10,000 large
+  // bodies that all differ.
   bool motions = false;
-  // Of the scene (scene_flotation()): the attitudes at which its bodies float; nullptr: they are not
+  // The attitudes at which the scene's bodies float, from scene_flotation(); nullptr: they are not
   // reported.
   const std::vector<FlotationOfBody>* flotation = nullptr;
 };
@@ -37,37 +37,37 @@ std::string scene_report_text(const Scene& scene, const SceneReportOptions& opti
 // system does; and "components", all systems' one after the other, with the keys of the scene file. Every
 // number parses to the double that is used.
 //
-// Only where the scene has them: "current" of "water" [m/s]; "drag" and "added_mass" of a body, with the keys
-// of the scene file; and with options.motions "motions" of a body
-// with [body.client]. "motions" is null where it is unknown. Else it holds the fields of BodyMotions by name,
-// with "heave", "roll" and "pitch" as objects, null where nothing restores the motion: "period" and, by name,
-// the other fields of NaturalMotion. Infinite numbers are null.
+// Only where the scene has them, "water" has "current" [m/s], and a body "drag" and "added_mass", with the
+// keys of the scene file. With options.motions a body with [body.client] has "motions", null where they are
+// unknown. Else it holds the fields of BodyMotions by name, with "heave", "roll" and "pitch" as objects, null
+// where nothing restores the motion: "period" and, by name, the other fields of NaturalMotion. Infinite
+// numbers are null.
 //
-// With options.flotation "flotation" of a body with [body.client], null where it is unknown or left out:
+// With options.flotation a body with [body.client] has "flotation", null where it is unknown or left out:
 // "outcome" ("floats", "sinks", "neutrally_buoyant", "takes_in_water", "out_of_range"), "start" ("pose" or
 // "equilibrium"), "mass" [kg] with the liquids in its tanks, "attitudes", "truncated", "turn" [degrees]
 // (null: it reaches none) and "starts_unstable". An attitude has "reached" (the body turns to it from its
 // `orientation`), "position" and "quaternion_wxyz" (at the place and heading of [body.client]), "draft",
 // "heel" and "trim" [degrees], "metacentric_heights", "energy" [J] and "family", see equilibrium.h.
 //
-// "polygons" of a mesh's "source", only where the file has faces of four or more corners: their "count",
+// A mesh's "source" has "polygons" only where the file has faces of four or more corners: their "count",
 // "non_planar", "largest_distance" [m] and "split_volume" [m^3], see PolygonSplit.
 //
 // "parts", "compartments" and "tanks" of a body, and "sections" of a mesh, which lists those that use it,
 // exist only where the scene has them.
 std::string scene_report_json(const Scene& scene, const SceneReportOptions& options = {});
 
-// The reports of meshes that are refused, as lines and as one JSON object, with a final newline: "refused",
-// an array of the fields of MeshReport with "error", a text. Of a file that could not be read, only "error".
+// Return the reports of refused meshes as lines, and as one JSON object, with a final newline: "refused" is
+// an array of the fields of MeshReport with "error", a text; there is only "error" for an unreadable file.
 std::string refused_meshes_text(const std::vector<RefusedMesh>& meshes);
 std::string refused_meshes_json(const std::vector<RefusedMesh>& meshes);
 
-// Warnings about a scene that can be used: those of sea_warnings(); a full quadratic drag
-// matrix that can drive the body (find_driving_twist(), for the first kMaxSearchedMatrices that differ); drag
-// or added mass of a body whose method has no error bound; a centre farther from the mesh's box than the
-// mesh's diagonal; coefficients that are too large for the mesh; parts, compartments and tanks that overlap,
-// and compartments and tanks that stick out of their hull (subdivision_warnings.h); meshes that lie on their
-// side (up_axis.h). A warning about equal bodies appears once.
+// Warns about a scene that can be used: as sea_warnings() does; about a full quadratic drag matrix that can
+// drive the body (find_driving_twist(), for the first kMaxSearchedMatrices that differ); drag or added mass
+// of a body whose method has no error bound in waves; a centre farther from the mesh's box than the mesh's
+// diagonal; coefficients that are too large for the mesh; parts, compartments and tanks that overlap, and
+// compartments and tanks that stick out of their hull (subdivision_warnings.h); meshes that lie on their side
+// or are in another unit (mesh_warnings.h). A warning about equal bodies appears once.
 std::vector<Warning> scene_warnings(const Scene& scene);
 
 }  // namespace buoyancy

@@ -167,7 +167,7 @@ void read_wave_systems(TomlTable& water, const std::filesystem::path& directory,
   }
 }
 
-// What a received sea brings with it.
+// Refuses the keys whose values come with a received sea.
 void refuse_keys_of_received_sea(TomlTable& water) {
   for (const std::string_view key : {"depth", "wave_pressure", "time_origin", "ramp"}) {
     if (!water.has(key)) continue;

@@ -9,7 +9,7 @@
 namespace buoyancy {
 
 // Reads `depth`, `wave_pressure`, `time_origin`, `ramp` and `waves`, and the files of components that `waves`
-// names, relative to `directory`. Errors are then in the context. What concerns the sea as a whole is left to
+// names, relative to `directory`. Errors go into the context. The sea as a whole is checked by
 // Sea::make(). Returns true if waves = "received".
 bool parse_sea(TomlTable& water, const std::filesystem::path& directory, SceneParseContext& context,
                SeaDescription& sea);

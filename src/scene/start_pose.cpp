@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNearVertical = 0.9;  // of |up . axis|
 
-// The horizontal direction by which a heading is compared before and after.
+// Returns the body axis whose projection on the horizontal plane is the heading, before and after.
 Vec3 heading_axis_B(const Vec3& up_before_B, const Vec3& up_after_B) {
   for (int i = 0; i < 2; ++i) {
     if (std::abs(up_before_B[i]) <= kNearVertical && std::abs(up_after_B[i]) <= kNearVertical) {

@@ -1,4 +1,4 @@
-// What a body consists of and what is in it: parts, compartments that are open to the sea, and tanks.
+// The parts of which a body consists, and the compartments, open to the sea, and the tanks that are in it.
 //
 // All three are closed meshes in the body's frame. A part displaces water; all parts of a body are one mesh
 // (Body::prepared_mesh), so that nothing that uses it knows of parts. A compartment takes away what it would
@@ -53,15 +53,15 @@ struct BodyCondition {
   bool operator==(const BodyCondition&) const = default;
 };
 
-// The condition in the scene file.
+// Returns the condition in the scene file.
 BodyCondition initial_condition(const Subdivision& subdivision);
 
-// By which the displacement of a compartment is multiplied in the sums of its body, from -1 to 0.
+// Returns the factor of a compartment's displacement in the sums of its body, from -1 to 0.
 inline double factor_of(const BodyCompartment& compartment, double flooded) {
   return -compartment.permeability * flooded;
 }
 
-// A tank with a volume of liquid in it. [m^3]
+// Returns the tank with this volume of liquid [m^3] in it.
 inline Tank with_liquid(const BodyTank& tank, double liquid_volume) {
   return {.mesh = &tank.prepared_mesh->mesh, .liquid_volume = liquid_volume, .density = tank.density};
 }

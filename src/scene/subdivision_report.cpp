@@ -5,7 +5,7 @@
 namespace buoyancy {
 namespace {
 
-// What a part, compartment or tank begins with. volume: its key.
+// Returns the facts with which a part, compartment or tank begins. volume: the key of its volume.
 Facts section_facts(std::string_view section, const std::string& name, const PreparedMesh& mesh,
                     const Scene& scene, std::string_view volume) {
   Facts facts;

@@ -1,5 +1,5 @@
-// Internal to scene_file.cpp: a check of TOML text before toml++ parses it, which calls itself for every
-// level of tables within tables and so ends the process on a text of a few thousand dots.
+// Internal to scene_file.cpp: checks TOML text before toml++ parses it. The parser recurses for every level
+// of tables within tables, so that a text of a few thousand dots would overflow the stack.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace buoyancy {
 
-// Levels of one value: those of its header, of its key, and of the arrays and inline tables around it, each
-// up to this number. The deepest key of a scene has 5 in all.
+// The most levels of a header, and of a key with the arrays and inline tables around it. The deepest key of a
+// scene has 5 in all.
 inline constexpr std::size_t kMaxTomlLevels = 32;
 
 // Returns an Error that names the line if a header, or a key with the arrays and inline tables around it, has

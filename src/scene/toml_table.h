@@ -24,7 +24,7 @@ namespace buoyancy {
 // Replaces every control character by '?', so that file contents are safe to print on one line.
 std::string printable(std::string text);
 
-// SceneDescription::text_fingerprint
+// Returns SceneDescription::text_fingerprint.
 std::uint64_t fingerprint_of(const toml::table& scene_file);
 
 // The file being parsed and the first error in it.
@@ -69,8 +69,8 @@ class TomlTable {
 
   bool failed() const { return context_->error.has_value(); }  // in this table or before it
 
-  // Set an error about the table as a whole, about a key's value, in the file that a key names, about a
-  // missing key.
+  // These set an error: about the table as a whole, about a key's value, in the file that a key names, and
+  // about a missing key.
   void fail(std::string actual, std::string expected, std::string cause = {}, std::string hint = {});
   void fail_at(std::string_view key, std::string expected, std::string cause = {}, std::string hint = {});
   void fail_in(std::string_view key, Error error);

@@ -32,7 +32,7 @@ std::string quaternion_text(const Eigen::Quaterniond& q) {
   return format_text("[{:12}, {:12}, {:12}, {:12}]", plain(q.w()), plain(q.x()), plain(q.y()), plain(q.z()));
 }
 
-// What to pass to a program. report: of a mesh whose file states its up axis.
+// Says which argument to pass to a program. report: of a mesh whose file states its up axis.
 std::string remedy_text(const MeshReport& report, UpRemedy remedy) {
   const std::string axis =
       remedy == UpRemedy::kShipAxis ? direction_text(*report.up_B) : report.source.up_axis;
@@ -51,7 +51,7 @@ std::optional<Vec3> axis_from_name(std::string_view name) {
 
 Eigen::Quaterniond orientation_with_up(const Vec3& axis, const Vec3& scale, const Vec3& up_B) {
   const Vec3 from = axis.cwiseProduct(scale).normalized();
-  // Half a turn is one about x, where that serves: a hull keeps its bow.
+  // Half a turn is about x where possible, so that the bow of a hull stays in front.
   if (from.isApprox(-up_B) && from.x() == 0.0) return {0.0, 1.0, 0.0, 0.0};
   // With two equal components a quarter turn exchanges coordinates without rounding them.
   if (const Vec3 about = from.cross(up_B); from.dot(up_B) == 0.0) {
@@ -65,7 +65,7 @@ std::optional<Warning> up_axis_warning(const MeshReport& report, const Vec3& sca
   constexpr double kHalfRightAngle = 0.70710678;  // its cosine
   const std::optional<Vec3> up_of_file = axis_from_name(report.source.up_axis);
   if (!up_of_file || !report.up_B || report.up_B->dot(up_B) > kHalfRightAngle) return std::nullopt;
-  // The ship's axis may be any; a scene file with the same water has z up.
+  // The advised orientation is for a scene file, where z is up whatever the ship's upward axis is.
   const bool is_of_ship = remedy == UpRemedy::kShipAxis;
   const Eigen::Quaterniond upright =
       orientation_with_up(*up_of_file, scale, is_of_ship ? Vec3(Vec3::UnitZ()) : up_B);

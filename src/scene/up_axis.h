@@ -1,4 +1,4 @@
-// Meshes that lie on their side: coordinates are used as their file has them, whichever of its axes is up.
+// Finds meshes that lie on their side: coordinates are used as in the file, whichever of its axes is up.
 #pragma once
 
 #include <optional>
@@ -15,11 +15,11 @@ namespace buoyancy {
 // The unit vector of "x", "+x", "-y" and so on; nullopt for other names, such as "not stated".
 std::optional<Vec3> axis_from_name(std::string_view name);
 
-// The orientation of a mesh that makes an axis of its file up. axis: of the file; up_B: in the frame of the
-// body; both unit length. scale: of the mesh's placement, whose negative factors turn axes round.
+// Returns the orientation of a mesh that turns an axis of its file up. axis: of the file; up_B: in the frame
+// of the body; both unit length. scale: of the mesh's placement, whose negative factors turn axes round.
 Eigen::Quaterniond orientation_with_up(const Vec3& axis, const Vec3& scale, const Vec3& up_B = Vec3::UnitZ());
 
-// What a warning advises beside the `orientation` of a mesh in a scene file.
+// The advice of a warning beside the `orientation` of a mesh in a scene file.
 enum class UpRemedy {
   kNone,
   kOption,    // --up, which turns the mesh by orientation_with_up()
@@ -34,13 +34,13 @@ struct UpAxisCheck {
   UpRemedy remedy = UpRemedy::kNone;
 };
 
-// A warning without a subject if the file states an up axis that lies more than 45 degrees from up, with the
-// `orientation` that stands the mesh up. scale: of its placement; up_B: in the frame of the body, unit
+// Returns a warning, without a subject, if the file states an up axis more than 45 degrees from up, with the
+// `orientation` that sets the mesh upright. scale: of its placement; up_B: in the frame of the body, unit
 // length.
 std::optional<Warning> up_axis_warning(const MeshReport& report, const Vec3& scale, const Vec3& up_B,
                                        UpRemedy remedy);
 
-// Of all meshes of a scene, in the order of its bodies. A warning about equal bodies appears once.
+// Warns about all meshes of a scene, in the order of its bodies. A warning about equal bodies appears once.
 std::vector<Warning> up_axis_warnings(const Scene& scene, const UpAxisCheck& check = {});
 
 }  // namespace buoyancy
