@@ -47,7 +47,7 @@ WaveDetails details_of(const WaveBuoyancyResult& computed) {
           static_cast<std::int64_t>(computed.patches)};
 }
 
-// The fields that accompany a result that was computed at a valid pose.
+// Sets the fields that accompany a result at a valid pose.
 void complete_outcome(bool quaternion_normalised, const WaveDetails& in_waves, BodyOutcome& outcome) {
   outcome.status = to_body_status(outcome.result.status);
   outcome.quaternion_normalised = quaternion_normalised;
@@ -55,7 +55,7 @@ void complete_outcome(bool quaternion_normalised, const WaveDetails& in_waves, B
   outcome.in_waves = in_waves;
 }
 
-// computed: of the mesh of the query's body alone.
+// computed: the load on the body's mesh alone, to which those of compartments and tanks are added.
 void set_outcome(const PoseQuery& query, const WaterState& water, WaveBuoyancyResult& computed) {
   BodyOutcome& outcome = *query.outcome;
   outcome.flooded_volume = 0.0;
@@ -121,7 +121,7 @@ WaveBuoyancyResult buoyancy_of(const Solver& solver, const PreparedMesh& mesh, c
 
 double estimated_time(const Solver& solver, bool in_waves) {
   const auto triangles = static_cast<double>(solver.mesh().surface.triangles.size());
-  // In waves, the cost hardly depends on the mesh; the baselines add up some hundred components per triangle.
+  // In waves, the cost hardly depends on the mesh; other methods add up some hundred components per triangle.
   if (in_waves) return solver.method() == Method::kHierarchical ? 4e4 : 200.0 * triangles;
   return solver.method() == Method::kHierarchical ? 200.0 + 35.0 * std::sqrt(triangles) : 1.5 * triangles;
 }
@@ -161,7 +161,7 @@ void evaluate(const Body& body, const WaterState& water, const ValidatedPose& va
   evaluate(std::span(&query, 1), water);
 }
 
-// Apart from try_evaluate_from_bounds(), which is the whole cost of most bodies of a large scene at rest.
+// Not inlined into try_evaluate_from_bounds(), the whole cost of most bodies of a large scene at rest.
 [[gnu::noinline]] static bool try_evaluate_from_bounds_in_waves(const Body& body,
                                                                 const FullySubmerged& submerged,
                                                                 const SeaAtTime& waves,

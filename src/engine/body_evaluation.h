@@ -1,5 +1,5 @@
-// From the state of a body to its wrench: checks the state, extrapolates its pose by lead_time and computes
-// what the water does to the body. This is the main path's link between messages and hydrostatics. The
+// Computes the wrench on a body from its state: checks the state, extrapolates its pose by lead_time and adds
+// up the loads of the water. This is the main path's link between messages and hydrostatics. The
 // service, queries of many poses, the report and the response checks all call these functions, so that they
 // agree on the order of the checks and on the bits.
 #pragma once
@@ -69,7 +69,7 @@ struct WaterState {
   const SeaAtTime* waves = nullptr;  // nullptr: the water is at rest
 };
 
-// The farthest lead time [s] in waves: phases are exact to this time and further.
+// The largest lead time [s] in waves. Phases are exact up to this time and beyond.
 inline constexpr double kMaxLeadTimeInWaves = 1e12;
 
 // The status of a state whose pose is valid, before anything is computed. Checks in this order: the twist is
@@ -84,12 +84,12 @@ inline BodyStatus check_state(const BodyState& state, double lead_time, const Wa
   return is_far ? BodyStatus::kOutOfRange : BodyStatus::kOk;
 }
 
-// [ns], rough cost of a query at the surface on the processors of docs/measurements.md. A factor of two
-// either way makes no difference to what uses it.
+// Returns the rough cost [ns] of a query at the surface on the processors of docs/measurements.md. An error
+// by a factor of two makes no difference to its callers.
 double estimated_time(const Solver& solver, bool in_waves);
 
-// The result of a mesh at a pose. mesh: of the solver. Precondition: the water is known. No heap allocation,
-// except, in waves, until a thread's buffers are as large as its queries need.
+// Returns the load on the solver's mesh at a pose. mesh: that of the solver. Precondition: the water is
+// known. No heap allocation, except, in waves, until a thread's buffers are as large as its queries need.
 WaveBuoyancyResult buoyancy_of(const Solver& solver, const PreparedMesh& mesh, const WaterState& water,
                                const Pose& pose, const Vec3& reference_B);
 
@@ -102,13 +102,13 @@ struct PoseQuery {
   BodyOutcome* outcome = nullptr;
 };
 
-// The most queries that are computed together: a group is quicker than its queries one by one, and has their
-// bits.
+// The most queries that are computed together: a group is quicker than its queries one by one, and gives the
+// same bits.
 inline constexpr std::size_t kMaxGroup = 8;
 
 // Sets the outcome of every query. Preconditions: there are at most kMaxGroup, and the water is known.
 void evaluate(std::span<const PoseQuery> queries, const WaterState& water);
-// The same for one.
+// Sets the outcome of one query.
 void evaluate(const Body& body, const WaterState& water, const ValidatedPose& validated, BodyOutcome& outcome,
               const BodyCondition* condition = nullptr);
 // Sets outcome to what bounds alone decide (see try_buoyancy_from_bounds, and in waves

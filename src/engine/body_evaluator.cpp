@@ -98,7 +98,7 @@ void BodyEvaluator::prepare_buffers(std::size_t states) {
   pending_order_.reserve(states);
   unfinished_.reserve(states);
   task_results_.resize(std::max(chunks_of(states), max_pending_tasks()));
-  pending_.resize(states);  // the last one, because its size says that all are large enough
+  pending_.resize(states);  // resized last: its size shows that all buffers are large enough
 }
 
 std::size_t BodyEvaluator::max_pending_tasks() const {

@@ -2,11 +2,10 @@
 // does not need.
 //
 // A body whose pose equals, bit for bit, that of its last result gets that result again; drag and added mass,
-// which depend on its velocities, are added to it anew. A dry or a fully
-// submerged body is evaluated from its bounds. The other bodies are computed. Large requests are shared among
-// threads where the estimated work justifies it. One thread computes each body's result from that body's
-// state alone, so the result's bits do not depend on the number of threads, nor on the parts that a request
-// is divided into.
+// which depend on its velocities, are added to it anew. A dry or a fully submerged body is evaluated from its
+// bounds. The other bodies are computed. Large requests are shared among threads where the estimated work
+// justifies it. One thread computes each body's result from that body's state alone, so the result's bits do
+// not depend on the number of threads, nor on the parts that a request is divided into.
 #pragma once
 
 #include <chrono>
@@ -78,11 +77,11 @@ class BodyEvaluator {
   // Replaces the condition of a body with compartments or tanks, and discards its cached result. At first a
   // body has the condition of the scene file. body: index into the scene's.
   void set_condition(std::size_t body, const BodyCondition& condition);
-  // Makes it unknown until the next set_condition(): the body has the status kBadCondition and no wrench.
+  // Makes the condition unknown until the next set_condition(): the body gets kBadCondition and no wrench.
   void set_condition_unknown(std::size_t body) { unknown_conditions_[body] = true; }
   // Precondition: the body has compartments or tanks.
   bool is_condition_known(std::size_t body) const { return !unknown_conditions_[body]; }
-  // nullptr: the body has neither compartments nor tanks.
+  // Returns nullptr for a body with neither compartments nor tanks.
   const BodyCondition* condition(std::size_t body) const {
     return conditions_.empty() || representative_of(body).subdivision == nullptr ? nullptr
                                                                                  : &conditions_[body];
@@ -104,8 +103,8 @@ class BodyEvaluator {
     kPose,    // the bounds decided: evaluating them again is as quick as storing a result
     kResult,  // results_ holds the outcome
   };
-  // What a body keeps from one request to the next. A large scene is limited by memory: one cache line for a
-  // body that does not cross the surface.
+  // What a body keeps from one request to the next. A large scene is limited by memory, so that a body
+  // that does not cross the surface takes one cache line.
   struct alignas(64) LastPose {
     PoseBits pose{};
     std::uint32_t request = 0;  // number of the request that contained the body last
@@ -143,11 +142,11 @@ class BodyEvaluator {
   // Evaluates the states of a chunk as far as cached results and bounds go; adds the others to pending_ and
   // repeated_.
   void evaluate_chunk(const RequestView& request, const States& states, std::size_t chunk);
-  // state: the i-th of the request. Sets outcome if done; pending if that is the result,
-  // and if done with kOk in a scene that has loads.
+  // state: the i-th of the request. Sets outcome for kDone, and pending for kPending, as well as for kDone
+  // with status kOk in a scene that has loads.
   EvaluationStep evaluate_from_bounds(const BodyState& state, double lead_time, std::size_t i,
                                       Pending& pending, BodyOutcome& outcome);
-  // False: neither the cached result nor the bounds suffice; the body has to be computed.
+  // Returns false if neither the cached result nor the bounds suffice: the body has to be computed.
   bool evaluate_from_bounds(const ValidatedPose& validated, std::size_t body, BodyOutcome& outcome);
   void compute_pending(const RequestView& request, ServiceCounters& counters, Deadline deadline);
   // Computes the bodies of at most kMaxGroup states together.
@@ -177,7 +176,7 @@ class BodyEvaluator {
   std::vector<bool> unknown_conditions_;   // likewise
   std::uint32_t request_number_ = 0;
 
-  // Of the current evaluate(). Chunk c's part of pending_ and repeated_ begins at the chunk's first state.
+  // State of the current evaluate(). Chunk c's part of pending_ and repeated_ begins at its first state.
   Outputs outputs_;
   std::size_t first_state_ = 0;
   std::vector<Pending> pending_;

@@ -52,7 +52,7 @@ Error unknown_index(const Body& body, const ConditionChange& change, std::size_t
           "the sender has another scene file, or counts from 1", kUntilThen};
 }
 
-// The value of a change, or why it cannot be used.
+// Returns the value of a change, or an error if it cannot be used.
 Expected<double> value_of(const Body& body, const ConditionChange& change) {
   const auto index = static_cast<std::size_t>(change.index);
   if (change.kind == ConditionKind::kCompartment) {

@@ -1,5 +1,5 @@
-// Which condition the compartments and tanks of a scene's bodies have at which time: that of the scene file,
-// or what was received in messages.
+// Keeps the condition of the compartments and tanks of a scene's bodies over time: that of the scene file, or
+// what was received in messages.
 //
 // A change of a compartment or tank holds for requests from its utime on. One that is received later replaces
 // what held from its own utime on for the same compartment or tank, so that a sender that starts over starts
@@ -10,7 +10,7 @@
 // no wrench, until a usable change of the same compartment or tank holds. Where the message names none that
 // the body has, any usable change of the body ends it.
 //
-// A value: copies share nothing.
+// It is a value: copies share nothing.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@
 
 namespace buoyancy {
 
-// From `first` to `last`, both included. [us]
+// The times from `first` to `last` [us], both included.
 struct UtimeRange {
   std::int64_t first = std::numeric_limits<std::int64_t>::min();
   std::int64_t last = std::numeric_limits<std::int64_t>::max();
@@ -48,8 +48,8 @@ class ConditionHistory {
   bool empty() const { return changes_.empty() && !dropped_; }
   // Replaces what holds from change.from_utime on. O(kMaxChanges); no heap once as many are kept.
   void add(const Change& change);
-  // What holds at this time; nullptr: nothing has been received for it. Shortens `range` to where that holds.
-  // The pointer is valid until the next add(). O(log kMaxChanges).
+  // Returns what holds at this time; nullptr if nothing has been received for it. Shortens `range` to where
+  // that holds. The pointer is valid until the next add(). O(log kMaxChanges).
   const Change* at(std::int64_t utime, UtimeRange& range) const;
 
  private:
@@ -68,9 +68,9 @@ class ConditionTimeline {
   // that of its tank by rounding alone counts as the tank's. O(log bodies + kMaxChanges).
   Expected<void> receive(Bytes message, const Scene& scene);
 
-  // The timeline for another scene than the one that this is for, `before`. Of bodies whose id has the same
-  // compartments and tanks there, by number, by name and, for tanks, by volume, it has what was received;
-  // other bodies begin with the condition of the scene file.
+  // Returns the timeline for another scene. before: the one that this timeline is for. A body keeps what was
+  // received if `scene` has a body of its id with the same compartments and tanks, by number, by name and,
+  // for tanks, by volume; other bodies begin with the condition of the scene file.
   ConditionTimeline for_scene(const Scene& before, const Scene& scene) const;
 
   // The bodies with compartments or tanks, in the order of the scene.
@@ -79,14 +79,14 @@ class ConditionTimeline {
   std::size_t body(std::size_t i) const { return bodies_[i].body; }
 
   // Replaces `condition` by that of the i-th of these bodies at this time, and shortens `range` to where it
-  // stays the same. False: it is unknown, and `condition` is then unspecified. No heap once the vectors of
-  // `condition` are as long as those of the largest body. O(compartments and tanks * log kMaxChanges).
+  // stays the same. Returns false if it is unknown; `condition` is then unspecified. No heap once the vectors
+  // of `condition` are as long as those of the largest body. O(compartments and tanks * log kMaxChanges).
   bool condition_at(std::int64_t utime, std::size_t i, const Scene& scene, BodyCondition& condition,
                     UtimeRange& range) const;
 
  private:
-  // Where the histories of a body are: those of its compartments, of its tanks, and then one of messages that
-  // name neither, whose changes hold no value.
+  // The place of a body's histories: those of its compartments, of its tanks, and then one of messages that
+  // name none of them, whose changes hold no value.
   struct BodyHistories {
     std::size_t body = 0;  // index into the scene's
     std::size_t first = 0;
@@ -96,7 +96,7 @@ class ConditionTimeline {
     std::size_t unnamed() const { return first + compartments + tanks; }
   };
 
-  // nullptr: it has neither compartments nor tanks.
+  // Returns nullptr for a body with neither compartments nor tanks.
   const BodyHistories* find(std::size_t body) const;
 
   std::vector<BodyHistories> bodies_;  // body ascends

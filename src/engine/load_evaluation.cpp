@@ -19,7 +19,7 @@ double volume_error_bound(const Body& body, const WaterState& water, const BodyO
       outcome.result.immersion == Immersion::kSubmerged && body.solver.method() == Method::kHierarchical;
   if (constant) return mesh.rounding_bound();
   if (water.waves != nullptr) return outcome.in_waves.volume_error_bound;
-  // At rest the force along up is rho g V, also as the approximations compute both.
+  // At rest the force along up is rho g V, also where a method only approximates V.
   const double specific_weight = water.at_rest->density * water.at_rest->gravity;
   return specific_weight > 0.0 ? outcome.result.force_error_bound / specific_weight : mesh.volume;
 }
@@ -45,8 +45,8 @@ ImmersionFactor immersion_factor(ImmersionScaling scaling, const Body& body, con
       return factor_within_unit(area.value / mesh.area, area.error / mesh.area + 4.0 * kEpsilon);
     }
     case ImmersionScaling::kNone: {
-      // The factor jumps at the volume that counts as none. Rounding defines on which side a body is; what
-      // an approximation of the volume left out does not.
+      // The factor jumps from 0 to 1 where a volume begins to count. Rounding errors of the volume decide on
+      // which side a body is, but the larger error of an approximation leaves it undecided.
       const double error = volume_error_bound(body, water, outcome);
       const bool undecided = error > 4.0 * mesh.volume_tolerance() && std::abs(volume) <= error;
       return {wet ? 1.0 : 0.0, undecided ? 1.0 : 0.0};
@@ -105,8 +105,8 @@ FlowAtBody flow_at_body(const WaterState& water, const Vec3& current_W, const Ve
   const WaterAtPoint point = water.waves->at(p_W);
   motion.velocity_W += point.velocity_W;
   motion.acceleration_W = point.acceleration_W;
-  // Every component's acceleration is at most g a k, and its velocity that over its frequency. Their phases
-  // are exact to 1e-15 of a turn, and their position is rounded.
+  // The acceleration of a component is at most g a k, and its velocity at most g a k over its frequency. The
+  // phases are exact to 1e-15 of a turn, and the position is rounded.
   const Sea& sea = water.waves->sea();
   const SeaExpansion& expansion = water.waves->sea().expansion();
   const double steepness = expansion.amplitude_sums[1];

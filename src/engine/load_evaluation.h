@@ -1,5 +1,5 @@
 // Evaluates the loads of a moving body: adds drag and added mass to its buoyant wrench, and fills in the
-// message that has them apart.
+// message that lists them separately.
 #pragma once
 
 #include "engine/body_evaluation.h"
@@ -15,11 +15,11 @@ struct BodyTwist {
 };
 BodyTwist twist_of(const BodyState& state);
 
-// The undisturbed water at a point: the current, and the waves if there are any. Precondition: the water is
+// Returns the undisturbed flow at a point: current and waves, if there are any. Precondition: the water is
 // known. Complexity: O(components) in waves.
 FlowAtBody flow_at_body(const WaterState& water, const Vec3& current_W, const Vec3& p_W);
 
-// The state of a body in the water, as the load formulas need it. outcome: its buoyancy at the pose, kOk.
+// Returns the state of a body that the load formulas need. outcome: its buoyancy at the pose, status kOk.
 // No heap allocation. Complexity: O(1) in water at rest where the volume scales the coefficients.
 HydrodynamicState hydrodynamic_state(const Body& body, const WaterState& water, const Vec3& current_W,
                                      const Pose& pose, const BodyTwist& twist, const BodyOutcome& outcome);
@@ -29,10 +29,10 @@ HydrodynamicState hydrodynamic_state(const Body& body, const WaterState& water, 
 // Preconditions: the body has a hydrodynamic model, and the wrench's status is kOk.
 void add_hydrodynamic_load(const HydrodynamicLoad& load, BodyWrench& wrench);
 
-// The loads of a body with this output. buoyancy: its buoyant wrench alone, with status kOk.
+// Returns the loads of a body with this output. buoyancy: its buoyant wrench alone, with status kOk.
 BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const HydrodynamicState& state,
                    const HydrodynamicLoad& load);
-// The same for a body without a hydrodynamic model. at_origin: the water at the body's origin.
+// Returns those of a body without a hydrodynamic model. at_origin: the flow at the body's origin.
 BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const FlowAtBody& at_origin);
 
 // Completes the wrench of a body that has drag, added mass or the loads output: adds drag and added mass, and

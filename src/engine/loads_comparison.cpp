@@ -8,10 +8,10 @@ namespace {
 
 using Matrix = std::array<std::array<double, 6>, 6>;
 
-constexpr double kReceivedWaveVelocity = 10.0;  // [m/s], scale of a sea that is not known here
+constexpr double kReceivedWaveVelocity = 10.0;  // [m/s], scale of waves that come in messages
 
-// The error of a submerged volume over the whole one. At rest, and where the pressure is proportional to the
-// depth, the force is rho g V.
+// Returns the error of a submerged volume over the whole one: at rest, and where the pressure is proportional
+// to the depth, that of the force rho g V; else it is unknown, and at most 1.
 double volume_fraction_error(const WrenchLimits& limits, const Body& body, const Scene& scene) {
   const bool other_pressure = scene.receives_sea() || (scene.sea() != nullptr &&
                                                        scene.sea()->pressure() != WavePressure::kHydrostatic);
@@ -20,7 +20,7 @@ double volume_fraction_error(const WrenchLimits& limits, const Body& body, const
   return std::min(1.0, limits.force / weight + kRounding);
 }
 
-// The error of a scaling's factor over the factor itself.
+// Returns the error of a scaling's factor over the factor itself.
 double relative_error(ImmersionScaling scaling, const WrenchLimits& limits, const Body& body,
                       const Scene& scene) {
   const double fraction = limits.submerged_volume / body.solver.mesh().volume;
@@ -29,7 +29,7 @@ double relative_error(ImmersionScaling scaling, const WrenchLimits& limits, cons
   return volume_fraction_error(limits, body, scene) / fraction;
 }
 
-// [m/s], of which the water's velocity consists.
+// Returns the sum [m/s] of the speeds of which the water's velocity consists.
 double water_velocity_scale(const Scene& scene) {
   double scale = scene.current_W().norm();
   if (scene.receives_sea()) return scale + kReceivedWaveVelocity;
@@ -39,7 +39,7 @@ double water_velocity_scale(const Scene& scene) {
   return scale;
 }
 
-// The largest entry of the 3 x 3 block in both matrices.
+// Returns the largest entry of a 3 x 3 block in both matrices.
 double largest(const Matrix& a, const Matrix& b, std::size_t first_row, std::size_t first_column) {
   double value = 0.0;
   for (std::size_t row = first_row; row < first_row + 3; ++row) {
@@ -50,8 +50,8 @@ double largest(const Matrix& a, const Matrix& b, std::size_t first_row, std::siz
   return value;
 }
 
-// relative: the allowed difference over the size of what the entries consist of. lever: [m], over which the
-// blocks of forces contribute to those of torques.
+// relative: the allowed difference over the largest term of an entry. lever: [m], by which the blocks of
+// forces contribute to those of torques.
 void add_matrix(std::string_view field, const Matrix& now, const Matrix& baseline, double relative,
                 double lever, FieldDifferences& fields) {
   const double force_v = largest(now, baseline, 0, 0);

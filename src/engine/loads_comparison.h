@@ -12,7 +12,7 @@
 
 namespace buoyancy {
 
-// What two wrenches of a body bound about its loads.
+// The limits that two wrenches of a body set for the differences of its loads.
 struct WrenchLimits {
   double force = 0.0;             // [N], the sum of both bounds
   double torque = 0.0;            // [N m]

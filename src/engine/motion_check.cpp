@@ -17,7 +17,8 @@ constexpr double kSlow = 0.01;             // [m/s] or [rad/s]
 constexpr double kDisagreement = 0.5;      // of the larger of two displacements
 constexpr double kAgreement = 0.2;         // likewise
 constexpr double kShortInterval = 0.0999;  // [s]
-constexpr double kSinglePrecision = 1e-6;  // relative, of positions and of quaternions: differences of them
+constexpr double kSinglePrecision = 1e-6;  // relative: smaller changes may be rounding to float32
+constexpr double kRadiansPerDegree = 0.017453292519943295;
 constexpr double kMicrosecondsPerSecond = 1e6;
 
 constexpr unsigned bit(MotionMistake mistake) {
@@ -36,7 +37,7 @@ Eigen::Quaterniond read_xyzw(const std::array<double, 4>& q) {
   return {q[3], q[0], q[1], q[2]};
 }
 
-// [rad]; its error is a twentieth at 1 rad.
+// Returns the rotation vector [rad] of a small turn; its error is a twentieth at 1 rad.
 Vec3 rotation_between(const Eigen::Quaterniond& before, const Eigen::Quaterniond& now) {
   const Eigen::Quaterniond turn = now * before.conjugate();
   return std::copysign(2.0, turn.w()) * turn.vec();
@@ -46,7 +47,7 @@ bool is_within(double share, const Vec3& a, const Vec3& b) {
   return (a - b).squaredNorm() <= share * share * std::max(a.squaredNorm(), b.squaredNorm());
 }
 
-// The likely cause, and what to do.
+// Returns the likely cause, and what to do.
 std::pair<const char*, const char*> explain(const MotionFinding& finding) {
   switch (finding.mistake) {
     case MotionMistake::kQuaternionXyzw:
@@ -78,8 +79,8 @@ std::pair<const char*, const char*> explain(const MotionFinding& finding) {
 struct MotionCheck::Pair {
   double interval = 0.0;  // [s], > 0
   BodyState before, now;
-  Vec3 moved = Vec3::Zero();                                     // [m] or [rad], W
-  double resolution = 0.0;                                       // likewise: a smaller motion says nothing
+  Vec3 moved = Vec3::Zero();  // [m] or [rad], W
+  double resolution = 0.0;    // [m] or [rad]: a smaller motion says nothing
   Vec3 stated_before = Vec3::Zero(), stated_now = Vec3::Zero();  // [m/s] or [rad/s]
 
   Vec3 stated() const { return 0.5 * interval * (stated_before + stated_now); }
@@ -113,7 +114,7 @@ Warning MotionFinding::warning() const {
 
 std::optional<MotionFinding> start_in_xyzw(const RequestView& first, const Scene& scene) {
   constexpr double kSamePlace = 1e-6;  // [m], and relative
-  constexpr double kSameTurn = 1e-6;   // of |cos(angle / 2)| below 1
+  constexpr double kSameTurn = 1e-6;   // of 1 - |cos(angle / 2)|
   constexpr double kOtherTurn = 1e-3;
   for (std::size_t i = 0; i < first.size(); ++i) {
     const BodyState state = first.body(i);
@@ -203,7 +204,7 @@ std::optional<MotionFinding> MotionCheck::compare_body(std::size_t place, bool i
   add_if(explains({stated.y(), stated.x(), -stated.z()}), MotionMistake::kNorthEastDown);
   add_if(stated.isZero(0.0), MotionMistake::kZero);
   add_if(scale != 0.0 && explains(streak.scale * stated), MotionMistake::kScale);
-  // The others are also what a vibration looks like that is sampled once in a period, or half of it.
+  // A vibration that is sampled once or twice per period looks like one of the other mistakes.
   constexpr unsigned kUnmistakable =
       bit(MotionMistake::kQuaternionXyzw) | bit(MotionMistake::kBodyFrame) | bit(MotionMistake::kDegrees);
   if ((mistakes & kUnmistakable) == 0 && pair.interval > kShortInterval) return std::nullopt;

@@ -21,7 +21,7 @@
 
 namespace buoyancy {
 
-// What would explain that stated velocities differ from the motion; the first one that does counts.
+// A mistake that explains why stated velocities differ from the motion; the first one that does counts.
 enum class MotionMistake : std::uint8_t {
   kQuaternionXyzw,  // the order of the quaternion; the velocity may be right
   kBodyFrame,
@@ -39,27 +39,27 @@ struct MotionFinding {
   MotionMistake mistake = MotionMistake::kUnknown;
   Vec3 moved = Vec3::Zero();   // [m/s] or [rad/s], W: mean velocity between the last two requests
   Vec3 stated = Vec3::Zero();  // likewise: mean of the two stated ones
-  int contradictions = 0;      // in a row; 0: of start_in_xyzw()
+  int contradictions = 0;      // in a row; 0: found by start_in_xyzw()
 
   Warning warning() const;
 };
 
-// A body of the first request of a session that is where the scene file has it start, and whose quaternion
+// Finds a body of a session's first request that is where the scene file has it start, and whose quaternion
 // would be the one of the file if its order were x, y, z, w. O(bodies).
 std::optional<MotionFinding> start_in_xyzw(const RequestView& first, const Scene& scene);
 
-// The requests of one session. It follows a few bodies at a time, and others once those agree, so that its
-// cost does not depend on their number.
+// Checks the requests of one session. It follows a few bodies at a time, and the next ones once those agree,
+// so that its cost does not depend on the number of bodies.
 class MotionCheck {
  public:
   static constexpr int kExplained = 10;
   static constexpr int kUnexplained = 30;
 
   // Checks the session's first request with start_in_xyzw(), and compares each further one with the one
-  // before it; nullptr: that is not known. A body is compared if it has the same place in both. Zeros in all
-  // velocities of a body count where they are used: with a lead_time, and in scenes with drag or added mass.
-  // Returns at most one finding about linear velocities and one about angular ones, once each. O(bodies) at
-  // first, then O(1).
+  // before it; nullptr if that is unknown. A body is compared if it has the same place in both. If all of a
+  // body's velocities are 0, they count only where they are used: with a lead_time, and in scenes with drag
+  // or added mass. The comparisons find at most one mistake of linear velocities and one of angular ones in a
+  // session. O(bodies) at first, then O(1).
   std::optional<MotionFinding> check(const RequestView* before, const RequestView& now, const Scene& scene);
 
  private:
@@ -82,7 +82,7 @@ class MotionCheck {
 
   bool has_begun_ = false;
   std::size_t first_ = 0;                                 // place of the first body that is followed
-  int pairs_ = 0;                                         // of requests, since it is
+  int pairs_ = 0;                                         // compared requests, since it is
   std::array<std::array<Streak, 2>, kBodies> streaks_{};  // of linear and angular velocity
   std::array<bool, 2> is_found_{};                        // likewise
 };
@@ -90,17 +90,17 @@ class MotionCheck {
 // Checks the requests of many sessions, each in the order of its steps.
 class MotionMonitor {
  public:
-  static constexpr std::size_t kMaxSessions = 64;  // the least recently used is forgotten
+  static constexpr std::size_t kMaxSessions = 64;  // the least recently used one is evicted
   static constexpr std::size_t kMaxFindings = 64;
 
-  // Ignores what is no request. O(sessions + bytes).
+  // Ignores bytes that are no request. O(sessions + bytes).
   void add(Bytes request, const Scene& scene);
   const std::vector<MotionFinding>& findings() const { return findings_; }  // the first ones
 
  private:
   struct Session {
     std::int64_t id = 0;
-    std::uint64_t used = 0;  // when
+    std::uint64_t used = 0;  // value of clock_ at the last use
     MotionCheck check;
     std::vector<std::uint8_t> last_request;
   };

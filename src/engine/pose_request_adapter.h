@@ -55,7 +55,7 @@ class PoseRequestAdapter {
 
   std::int64_t session_of(std::size_t index) const;
   std::int64_t next_seq(std::size_t index) const { return next_seq_[index]; }
-  // Of the requests of this channel, the number without usable velocities.
+  // The number of requests of this channel whose velocities cannot be used.
   std::int64_t without_velocities(std::size_t index) const { return without_velocities_[index]; }
 
   // Converts a message of channel channels()[index] into a request's bytes, with the pose's utime and the

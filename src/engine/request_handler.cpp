@@ -25,7 +25,7 @@ std::int64_t failed_bodies(const ServiceCounters& counters) {
          counters.bodies[static_cast<std::size_t>(BodyStatus::kOk)];
 }
 
-// One entry per body, if any body has the hydrostatics output.
+// The cache has one entry per body if any body has the hydrostatics output.
 std::size_t hydrostatics_cache_size(const Scene& scene) {
   return scene.bodies_with_hydrostatics() > 0 ? scene.bodies().size() : 0;
 }
@@ -48,7 +48,7 @@ RequestHandler::RequestHandler(const Scene& scene, const RequestHandlerOptions& 
 }
 
 void RequestHandler::set_scene(const Scene& scene) {
-  // What needs memory comes first.
+  // What allocates memory comes first: if it fails, nothing has changed.
   ConditionTimeline conditions = conditions_.for_scene(*scene_, scene);
   SeaTimeline seas(scene);
   std::vector<CachedHydrostatics> cached_hydrostatics(hydrostatics_cache_size(scene));
@@ -402,7 +402,7 @@ bool RequestHandler::evaluate_part(const RequestView& request, Session& session,
     return false;
   }
   for (std::size_t i = 0; i < count && outputs.loads.size() > 0; ++i) {
-    // A state whose body has loads has a place of its own.
+    // Only a state whose body has the loads output has a place of its own.
     const std::size_t end = i + 1 < count ? load_places_[i + 1] : loads;
     const BodyStatus status = outputs.response.body(work.next + i).status;
     if (load_places_[i] == end || status == BodyStatus::kOk) continue;

@@ -66,7 +66,7 @@ using BodyFailures = std::array<std::optional<BodyFailure>, kBodyStatusCount>;
 
 class RequestHandler {
  public:
-  // Requests that are in progress at a time.
+  // The most requests that are in progress at a time.
   static constexpr std::size_t kMaxInProgress = 8;
 
   enum class Step {
@@ -87,17 +87,17 @@ class RequestHandler {
     return begin(request, kNoDeadline) == Step::kAnswered ? last_response() : Bytes();
   }
 
-  // Handles the request until the deadline. What is left of it is in progress: a body is not divided. A retry
-  // of a request in progress is counted, and answered with it.
+  // Handles the request until the deadline, and leaves the other bodies in progress: a body is not divided. A
+  // retry of a request in progress is counted, and answered with it.
   Step begin(Bytes request, Deadline deadline);
-  // Goes on with a request in progress, with each in turn. Precondition: in_progress() > 0.
+  // Continues a request in progress; several take turns. Precondition: in_progress() > 0.
   Step resume(Deadline deadline);
   std::size_t in_progress() const { return in_progress_.size(); }
   // The session of the request that resume() goes on with. Precondition: in_progress() > 0.
   std::int64_t next_session_id() const { return sessions_[in_progress_.front()].id; }
   // Has the session no request in progress, and is there room for one more?
   bool has_room_for(std::int64_t session_id) const;
-  // What the last request of a session took.
+  // Returns how many slices the last request of a session took.
   enum class Pace { kUnknown, kOneSlice, kSeveralSlices };
   Pace pace_of(std::int64_t session_id) const;
   // Is it a retry of the session's last request, which begin() answers or counts without computing?
@@ -108,14 +108,14 @@ class RequestHandler {
     return last_session_ ? Bytes(sessions_[*last_session_].last_response) : Bytes();
   }
 
-  // The hydrostatics of that response: the bytes of a bodies_hydrostatics_t, valid
-  // until the next call. A retry gets the same bytes. There are no bytes if no body of the request has this
-  // output, or if they would be more than RequestBudgets::message_bytes.
+  // The hydrostatics of that response: the bytes of a bodies_hydrostatics_t, valid until the next call. A
+  // retry gets the same bytes. There are no bytes if no body of the request has this output, or if they would
+  // be more than RequestBudgets::message_bytes.
   Bytes last_hydrostatics() const {
     return last_session_ ? Bytes(sessions_[*last_session_].last_hydrostatics) : Bytes();
   }
 
-  // Likewise the loads: the bytes of a bodies_loads_t.
+  // The loads of that response, likewise as the bytes of a bodies_loads_t.
   Bytes last_loads() const { return last_session_ ? Bytes(sessions_[*last_session_].last_loads) : Bytes(); }
 
   // The session of the last request. Precondition: it was answered.
@@ -124,12 +124,12 @@ class RequestHandler {
   // Receives a sea_state_t for a scene whose waves are received (Scene::receives_sea()); see SeaTimeline.
   // Counts it. Errors: those of SeaTimeline::receive(); then nothing changes.
   Expected<void> receive_sea(Bytes message);
-  // The one that holds for the latest requests; nullptr: none has been received.
+  // The sea that holds for the latest requests; nullptr: none has been received.
   std::shared_ptr<const SeaPeriod> newest_sea() const {
     return water_.sea_at(std::numeric_limits<std::int64_t>::max());
   }
-  // For a replay that divides a recording: replaces the seas received so far; takes over and counts one more
-  // received sea, with those before it; counts a sea that could not be used.
+  // These are for a replay that divides a recording: they replace the seas received so far; replace them and
+  // count one more received sea, which is the last of them; count a sea that could not be used.
   void set_seas(SeaTimeline seas) { water_.set_seas(std::move(seas)); }
   void receive_seas(SeaTimeline seas) { water_.set_seas(std::move(seas)), ++counters_.seas_received; }
   void record_rejected_sea() { ++counters_.seas_rejected; }
@@ -154,8 +154,8 @@ class RequestHandler {
   void record_stale() { ++counters_.requests, ++counters_.stale; }
   // Counts a message that could not be converted into a request, by cause, like a rejected request.
   void record_rejected(DecodeError cause) { ++counters_.requests, count_decode_error(cause); }
-  // Counts a request that its caller does not handle because of kBusy, or for lack of memory; and a retry of
-  // one that waits.
+  // These count a request that the caller does not handle because of kBusy, or for lack of memory, and a
+  // retry of a request that waits.
   void record_busy() { ++counters_.requests, ++counters_.rejected_busy; }
   void record_no_memory() { ++counters_.requests, ++counters_.rejected_memory; }
   void record_retry() { ++counters_.requests, ++counters_.retries; }
@@ -164,8 +164,8 @@ class RequestHandler {
   // The newest seq handled in the session; nullopt: unknown session.
   std::optional<std::int64_t> newest_seq(std::int64_t session_id) const;
 
-  // What the states of a session contradict, since the last call: see MotionCheck. All of
-  // them are counted; of many at once the first are kept.
+  // Returns where velocities contradicted the motion since the last call, see MotionCheck. All findings are
+  // counted; of many at once only the first are kept.
   std::vector<MotionFinding> take_findings();
 
   const BodyFailures& newest_failures() const { return newest_failures_; }
@@ -186,7 +186,7 @@ class RequestHandler {
     std::size_t hydrostatics_next = 0;      // the hydrostatics of the states before it are computed
     std::size_t hydrostatics = 0;           // number of them
     std::uint64_t changes = 0;              // value of changes_ at the begin
-    std::shared_ptr<const SeaPeriod> sea;   // that holds; nullptr: none. Once it is in progress
+    std::shared_ptr<const SeaPeriod> sea;   // set once it is in progress; nullptr: none holds
     std::chrono::nanoseconds spent{0};      // in resume()
   };
   struct Session {
@@ -217,8 +217,8 @@ class RequestHandler {
   Session* start_session(const RequestId& first);
   // Begins a request, or begins it again. False: there is no room for what it will retain.
   bool begin_work(const RequestView& request, std::size_t request_bytes, Session& session);
-  // Does a step of the work on the request of this session: the end of it if it is the last one, or if it
-  // throws std::bad_alloc.
+  // Runs a step of the work on a session's request, and counts the request if it is then answered, or
+  // rejected because the step throws std::bad_alloc.
   template <typename Task>
   Step finish(std::size_t index, const Task& task);
   // Works on a request until it is complete, or until the deadline. Returns whether it is complete.
@@ -244,7 +244,7 @@ class RequestHandler {
   BodyEvaluator evaluator_;
   WaterAtTime water_;
   ConditionTimeline conditions_;
-  // Where the conditions that evaluator_ has hold; nullopt: those of the scene file, or outdated ones.
+  // The times at which evaluator_'s conditions hold; nullopt: they are the scene file's, or outdated.
   std::optional<UtimeRange> applied_conditions_;
   BodyCondition condition_;                 // reused
   std::vector<std::uint32_t> load_places_;  // reused

@@ -6,9 +6,9 @@
 namespace buoyancy {
 namespace {
 
-// [m]. The centre is M/V with |dM| <= lever dV, and no farther from the reference point than the lever, which
-// is torque bound / force bound; so its error is at most 2 lever dV / V. kAnyCenter if V does not exceed its
-// error bound.
+// The error bound [m] of the centre of buoyancy M/V is 2 lever dV / V: |dM| <= lever dV, and the centre is no
+// farther from the reference point than the lever, torque bound / force bound. It is kAnyCenter if V does not
+// exceed its error bound.
 constexpr double kAnyCenter = 1e300;
 double center_bound(const BodyWrench& wrench) {
   const double force = std::hypot(wrench.force[0], wrench.force[1], wrench.force[2]);

@@ -15,7 +15,7 @@
 
 namespace buoyancy {
 
-// Of one pair of wrenches, or the largest of several pairs.
+// The differences of one pair of wrenches, or the largest ones of several pairs.
 struct WrenchDifferences {
   double force = 0.0;             // [N]
   double torque = 0.0;            // [N m]
@@ -23,7 +23,7 @@ struct WrenchDifferences {
   double center = 0.0;            // [m], centre of buoyancy
   double force_in_bounds = 0.0;   // difference / sum of both bounds: <= 1 if both results are correct
   double torque_in_bounds = 0.0;  // the same for the torque
-  // The same for the centre, the volume's first moment over the volume. Its bound: 2 torque bound / force.
+  // The same for the centre of buoyancy, whose error bound is 2 torque bound / force.
   double center_in_bounds = 0.0;
 
   // The largest of the three ratios.

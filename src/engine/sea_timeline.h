@@ -1,10 +1,10 @@
-// Which sea holds at which time: that of the scene, or those that were received.
+// Keeps the sea of each time: that of the scene, or those that were received.
 //
 // A received sea holds for requests from its utime on. One that is received later replaces what held from its
 // own utime on, so that a sender that starts over starts a new timeline. A sea that is received again, as
 // senders do once a second, changes nothing. Only the last kMaxSeas different ones are kept.
 //
-// A value: copies share the seas themselves, which are immutable.
+// It is a value: copies share the seas themselves, which are immutable.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ class SeaTimeline {
  public:
   static constexpr std::size_t kMaxSeas = 16;
 
-  // The sea of the scene, which always holds; nothing where the scene receives its sea.
+  // Begins with the sea of the scene, which always holds, or without one where the scene receives its sea.
   explicit SeaTimeline(const Scene& scene);
 
   // Receives a sea_state_t. scene: the one that this timeline is for, which receives its sea. Errors: bytes
@@ -39,8 +39,8 @@ class SeaTimeline {
   // O(bytes); about 1 us per component and heap memory for a sea other than the one that holds.
   Expected<void> receive(Bytes message, const Scene& scene);
 
-  // The sea that holds at this time; nullptr: none has been received for it. The pointer is valid until the
-  // next call of receive().
+  // Returns the sea that holds at this time; nullptr: none has been received for it. The pointer is valid
+  // until the next call of receive().
   const std::shared_ptr<const SeaPeriod>* at(std::int64_t utime) const;
 
  private:

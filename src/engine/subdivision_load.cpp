@@ -40,8 +40,8 @@ void add_weight(const Tank& tank, const Water& water, const Mat3& R_WB, const Ve
   const Vec3 lever_B = (tank.mesh->center_B - reference_B) + liquid.centroid;
   sum.force_W -= weight * water.up_W;
   sum.torque_W -= weight * (R_WB * lever_B).cross(water.up_W);
-  // Turning to W and back rounds the lever, and the product rounds the weight. A volume that is given as a
-  // share of the tank's has the error of that.
+  // The rotation to W rounds the lever, and the product rounds the weight. A volume that is given as a share
+  // of the tank's has the error of the tank's volume.
   const double lever = tank.mesh->max_lever_arm(reference_B);
   sum.force_error_bound += 4.0 * kEpsilon * weight + specific_weight * tank.mesh->rounding_bound();
   const double volume_error = liquid.volume_error + tank.mesh->rounding_bound();

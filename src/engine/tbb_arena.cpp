@@ -16,7 +16,7 @@ namespace buoyancy {
 
 struct TbbArena::Impl {
   tbb::task_arena arena;
-  // Set above the hardware concurrency only, where TBB would print a warning to standard error.
+  // Set for more threads than the hardware has: TBB would warn about them on standard error otherwise.
   std::optional<tbb::global_control> raised_limit;
 };
 

@@ -1,4 +1,4 @@
-// The water of a scene at the time of one request after the other: at rest, or with the waves of that time.
+// Gives the water of a scene at the times of successive requests: at rest, or with the waves of each time.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class WaterAtTime {
   explicit WaterAtTime(const Scene& scene) : scene_(&scene), seas_(scene) {}
 
   // Received seas remain where both scenes receive them and agree about the water's density, up, gravity and
-  // current; else these hold. seas: those of the scene itself. The previous scene is not accessed again.
+  // current; else `seas`, those of the new scene, hold. The previous scene is not accessed again.
   void set_scene(const Scene& scene, SeaTimeline seas) noexcept;
 
   // See SeaTimeline::receive().
@@ -35,13 +35,13 @@ class WaterAtTime {
   // result is valid until the next call of a member. No heap allocation for the sea of the last call.
   // Complexity: O(components) where the time changes.
   Change move_to(std::int64_t utime, double lead_time);
-  // The same in this sea, as sea_at() returned it, also if it has been replaced since then.
+  // Moves to this time in a sea that sea_at() returned, even if it has been replaced since then.
   Change move_to(const std::shared_ptr<const SeaPeriod>& period, std::int64_t utime, double lead_time);
 
  private:
   const Scene* scene_;
   SeaTimeline seas_;
-  // Of the last call.
+  // These belong to the last call of move_to().
   std::shared_ptr<const SeaPeriod> period_;
   std::optional<SeaAtTime> waves_;  // of its sea, if that has waves
   std::int64_t utime_ = 0;
