@@ -1,6 +1,6 @@
-// Bodies of messages as columns of CSV files: the fields in the order of the message definition, with
-// matrices row by row after all others. Numbers have 17 significant digits, so that reading them back gives
-// the same double. A status is its number in the message, 0 for OK.
+// Maps the bodies of messages to columns of CSV files: the fields in the order of the message definition,
+// with matrices row by row after all others. Numbers have 17 significant digits, so that reading them back
+// gives the same double. A status is its number in the message, 0 for OK.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace buoyancy {
 
-// Fields that follow one another in a message, by their names in its definition.
+// A range of consecutive fields of a message, by their names in its definition.
 struct FieldRange {
   std::string_view first, last;
 };

@@ -30,8 +30,8 @@ constexpr NumberRange kAngleInRadians = NumberRange::from_to(-17453.0, 17453.0, 
 constexpr DoubleDouble kRadiansPerDegree{0.017453292519943295, 2.9486522708701687e-19};
 constexpr DoubleDouble kDegreesPerRadian{57.29577951308232, -1.9878495670576283e-15};
 
-// Both are rounded once, since the direction's error is multiplied by k |X|. The result is within half a
-// turn of 0.
+// Both conversions round once, since the error of a direction is multiplied by k |X|. The result is within
+// half a turn of 0.
 double to_radians(double degrees) {
   return (kRadiansPerDegree * std::remainder(degrees, 360.0)).hi;
 }
@@ -81,7 +81,7 @@ std::string bracketed(const Vec3& vector) {
   return text.append(format_vector(vector)).append("]");
 }
 
-// A NaN is at no distance within the tolerance.
+// Returns false if a number is NaN.
 bool is_near(const Vec3& a, const Vec3& b, double tolerance = kAxisTolerance) {
   return (a - b).norm() <= tolerance;
 }

@@ -51,12 +51,12 @@ std::optional<DecodeError> decode(Bytes bytes, SeaState& state);
 // Makes the same checks and returns the utime only. O(1).
 tl::expected<std::int64_t, DecodeError> peek_sea_utime(Bytes bytes);
 
-// The sea of a scene, which always holds: its utime is 0.
+// Returns the message of a scene's sea, which always holds: its utime is 0.
 SeaState to_sea_state(const Sea& sea, std::int64_t instance_id);
 
 // water, current_W [m/s]: of the scene. Its density, up and gravity are used; the level is the message's, and
 // so is the current that carries the waves, so that they are where the sender sees them. The Sea is the one
-// that the message was made of, to rounding. Errors name the field at fault: not finite, out of its range,
+// that the message was made from, to rounding. Errors name the field at fault: not finite, out of its range,
 // axes, gravity or current other than those of the scene, an unknown wave_pressure, and those of Sea::make().
 Expected<Sea> to_sea(const SeaState& state, const Water& water, const Vec3& current_W);
 

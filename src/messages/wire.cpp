@@ -90,7 +90,7 @@ std::uint8_t* encode_fixed(const Message& message, std::size_t bodies, std::vect
   return bytes.data() + fixed_size<Message>();
 }
 
-// fixed: the message, whose own bodies do not count.
+// fixed: the message that holds the other fields; its own bodies are not used.
 template <typename Message, typename Bodies>
 void encode_message(const Message& fixed, const Bodies& bodies, std::vector<std::uint8_t>& bytes) {
   BigEndianWriter writer(encode_fixed(fixed, bodies.size(), bytes));

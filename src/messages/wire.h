@@ -27,7 +27,7 @@ inline constexpr std::string_view kConditionChannel = "BUOYANCY_CONDITION";
 
 using Bytes = std::span<const std::uint8_t>;
 
-// Why bytes are not a message of the expected type. Where several apply, the first one is reported.
+// The reasons why bytes are not a message of the expected type. The first one that applies is reported.
 enum class DecodeError {
   kTruncated,    // shorter than the fixed fields
   kFingerprint,  // another type, or another version of the type

@@ -26,7 +26,7 @@ namespace buoyancy {
 template <typename T, typename Plain>
 concept MaybeConst = std::same_as<std::remove_const_t<T>, Plain>;
 
-// What a table of fields says of each, beside its type and shape, which are those of the member.
+// A field in the tables below. Its type and shape are those of the member.
 struct Field {
   std::string_view name;       // in the message definition
   std::string_view unit = {};  // such as "N m"; empty: none
@@ -176,8 +176,7 @@ inline constexpr std::array<std::string_view, kBodyStatusCount> kBodyCounterName
                                                                                   "bodies_bad_condition",
                                                                                   "bodies_not_certified"};
 
-// Visits each counter; with several ServiceCounters, the same counter of
-// all of them in one call.
+// Visits each counter; with several ServiceCounters, the same counter of all of them in one call.
 template <typename Visitor, MaybeConst<ServiceCounters>... C>
 void visit_counters(Visitor&& visitor, C&... c) {
   visitor({"requests"}, c.requests...);

@@ -1,5 +1,5 @@
-// A request's bytes and a response's bytes, read and written in place, body by body: large requests are not
-// copied into core types first, and several threads may share one message.
+// Reads the bytes of a request, and writes those of a response, in place and body by body: large requests are
+// not copied into core types first, and several threads may share one message.
 #pragma once
 
 #include <cassert>
@@ -42,7 +42,7 @@ class RequestView {
     return state;
   }
 
-  // body(i).body_id
+  // Returns body(i).body_id and reads nothing else.
   std::int32_t body_id(std::size_t i) const {
     assert(i < size_);
     std::int32_t id = 0;
