@@ -1,5 +1,5 @@
-// Many poses of one body, and their wrenches, as arrays that the caller owns: for learning, sweeps and the
-// bindings to other languages.
+// Arrays, owned by the caller, of many poses of one body and of their wrenches: for machine learning,
+// parameter sweeps and the bindings to other languages.
 #pragma once
 
 #include <cstddef>
@@ -30,8 +30,8 @@ struct PoseArrays {
   }
 };
 
-// What the wrench of a message holds of each pose (messages/request.h), with the same units and frames. A
-// pose whose status is not 0 has zeros.
+// The fields of each pose's wrench, with the units and frames of the message (messages/request.h). A pose
+// whose status is not 0 has zeros.
 struct WrenchArrays {
   std::span<std::int32_t> statuses;       // values of BodyStatus; n
   std::span<double> forces;               // [N], W frame; 3 n

@@ -79,11 +79,11 @@ class RangeEvaluation {
                                 .quaternion_normalised = validated.quaternion_normalised,
                                 .condition = nullptr,
                                 .outcome = &outcomes_[pending_count_]};
-    // Waves move on with the next pose.
+    // The next pose may move the waves, so that each is computed on its own.
     if (++pending_count_ == kMaxGroup || now_.waves != nullptr) compute_group();
   }
 
-  // Poses that wait are in water at rest, and are computed before waves begin.
+  // The pending poses are in water at rest, and are computed before waves begin.
   void move_to(std::int64_t utime) {
     const SeaAtTime* const waves = sea_.at(utime);
     if (waves != now_.waves) compute_group();
@@ -152,7 +152,7 @@ void evaluate_hydrostatics(const Body& body, const Water& water, const PoseArray
                  const ValidatedPose validated = validate_pose(state_at(body, poses, i), 0.0);
                  BodyOutcome outcome;
                  outcome.status = validated.status;
-                 // Its status says whether the pose is within range, and whether the boundary of an open mesh
+                 // The buoyancy's status says whether the pose is within range, and whether an open boundary
                  // is dry.
                  if (outcome.status == BodyStatus::kOk) evaluate(body, {&water, nullptr}, validated, outcome);
                  hydrostatics[i] =

@@ -17,8 +17,8 @@ namespace {
 constexpr double kMinParallelWork = 5e4;
 constexpr double kMinTaskWork = 2e4;
 
-// A child of fork() has none of its parent's threads, and what they held stays locked, in oneTBB too: it
-// works on one thread. Until a program has its first pool there is nothing that a child could find locked.
+// A child of fork() has none of its parent's threads, and what they held stays locked, in oneTBB too, so
+// that it works on one thread. A child of a program that has no pool yet finds nothing locked.
 std::atomic<bool> is_forked_child{false};
 
 // Pools live as long as the program: starting threads takes as long as thousands of queries. A pool may run
@@ -44,7 +44,7 @@ void run_chunks(std::size_t count, double time_each, unsigned threads,
     return;
   }
   ThreadPool& pool = pool_with(threads);
-  // Small enough to share the work evenly, large enough to be worth a task.
+  // Chunks are small enough to share the work evenly, and large enough to be worth a task.
   const std::size_t least = static_cast<std::size_t>(kMinTaskWork / time_each) + 1;
   const std::size_t even = count / (std::size_t{16} * pool.thread_count()) + 1;
   const std::size_t chunk = std::max(least, even);

@@ -10,13 +10,13 @@
 
 namespace buoyancy {
 
-// A sea that moves from the time of one pose to that of the next. For one thread.
+// A sea that moves from the time of one pose to that of the next. Use it from one thread.
 class MovingSea {
  public:
   // sea: nullptr for water at rest; must outlive this object.
   explicit MovingSea(const PreparedSea* sea) : sea_(sea) {}
 
-  // The waves at this time [us]; nullptr: the water is at rest, or still before its ramp.
+  // Returns the waves at this time [us]; nullptr: the water is at rest, or its ramp has not begun.
   const SeaAtTime* at(std::int64_t utime) {
     if (sea_ == nullptr) return nullptr;
     if (!now_) {

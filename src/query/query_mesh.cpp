@@ -122,7 +122,7 @@ Expected<std::shared_ptr<const Body>> QueryMesh::body(Method method, double tole
                        "0 to 1, relative to the weight of the full displacement", "", ""});
   }
   if (method != Method::kHierarchical)
-    tolerance = 0.0;  // it is the only method with one
+    tolerance = 0.0;  // only kHierarchical has a tolerance
   else if (in_waves && tolerance == 0.0)
     tolerance = kDefaultWaveTolerance;
   const std::lock_guard lock(mutex_);

@@ -16,16 +16,16 @@
 namespace buoyancy {
 
 struct QueryMeshOptions {
-  // Of the coordinates in the frame of the queries' poses, see orientation_with_up() for files whose up axis
-  // is another one. Not finite, a factor of 0 and a quaternion of norm 0 are errors.
+  // Places the coordinates in frame B; see orientation_with_up() for files whose up axis is another one.
+  // Numbers that are not finite, a factor of 0 and a quaternion of norm 0 are errors.
   MeshPlacement placement{};
-  MeshRepair repair{};  // rims that are raised face z of the file as it is placed
+  MeshRepair repair{};  // a freeboard raises rims along z, after the placement
   OpenPolicy open = OpenPolicy::kRefuse;
   bool count_intersecting_pairs = false;  // for the report; takes several times as long as the rest
   ImportLimits limits{};                  // of a file
 };
 
-// Its members may be called by several threads at once.
+// Several threads may call its members at once.
 class QueryMesh {
  public:
   // Reads a mesh file. Errors: those of import_mesh() and prepare_mesh(), a placement out of range. refused:
@@ -64,7 +64,7 @@ class QueryMesh {
   // wave_mesh and meshlets are set by body() under the mutex, before anything refers to them.
   mutable PreparedMesh prepared_;
   mutable std::mutex mutex_;
-  mutable std::vector<std::shared_ptr<const Body>> bodies_;  // the last that were asked for
+  mutable std::vector<std::shared_ptr<const Body>> bodies_;  // the most recently requested ones
 };
 
 }  // namespace buoyancy

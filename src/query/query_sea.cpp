@@ -16,7 +16,7 @@ double time_per_point(const QuerySea& sea) {
   return kTimePerComponent * static_cast<double>(sea.waves()->prepared().size());
 }
 
-// The water at a point under a surface without waves.
+// Returns the water at a point if the surface has no waves.
 WaterAtPoint without_waves(const Water& water, const Vec3& p_W) {
   WaterAtPoint point;
   point.height = water.up_W.dot(p_W) - water.level;

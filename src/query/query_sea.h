@@ -30,7 +30,7 @@ class QuerySea {
   const std::shared_ptr<const PreparedSea>& waves() const { return waves_; }
   const Vec3& current_W() const { return current_W_; }  // [m/s], which carries the waves
   HorizontalAxes axes() const { return horizontal_axes(water_.up_W); }
-  // Whether a unit vector is up here. It may differ by rounding: up normalised again may have other last
+  // Returns whether a unit vector is up of this water, to rounding: normalising up again may change its last
   // bits.
   bool has_up(const Vec3& up_W) const { return (up_W - water_.up_W).cwiseAbs().maxCoeff() <= 1e-15; }
 
@@ -50,8 +50,8 @@ class QuerySea {
 void sea_elevations(const QuerySea& sea, std::span<const double> x1, std::span<const double> x2,
                     std::span<const std::int64_t> utimes, std::span<double> out, unsigned threads = 1);
 
-// Likewise the water at points in the world. points: [m], 3 n. Pressures over that of the air, of the waves
-// and of the water at rest together [Pa]; 0 above the surface.
+// The results of water_at_points(): points are in W [m], 3 n; utimes and threads are as above. Pressures are
+// gauge pressures, of the waves and of the water at rest together, and 0 above the surface.
 struct WaterMotionArrays {
   std::span<double> pressures;      // [Pa]; n, or empty: not wanted
   std::span<double> velocities;     // [m/s], W frame, of current and waves; 3 n, or empty
