@@ -27,7 +27,7 @@ constexpr const char* kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0";
 constexpr std::size_t kMaxChannelLength = 63;              // LCM's own limit
 constexpr const char* kSelfTestChannel = "LCM_SELF_TEST";  // liblcm's own, for messages without meaning
 
-// Packets that one handle_one() reads at most, so that a flood on other channels cannot block its caller.
+// The most packets that one handle_one() reads, so that a flood on other channels cannot block its caller.
 constexpr int kMaxForeignPackets = 1'000;
 
 bool is_memq(const std::string& url) {

@@ -79,7 +79,7 @@ class LcmConnection {
   // the options allow it. For callers that block after it returned false.
   bool handle_one_spinning(std::chrono::nanoseconds max_spin = std::chrono::nanoseconds::max());
 
-  // When the message that was handled last arrived [us since 1970]; 0: none has been handled yet. The time
+  // Returns when the last handled message arrived [us since 1970]; 0: none has been handled yet. The time
   // from then to its handling is the time that it was queued.
   std::int64_t received_utime() const;
   // Counts packets, fragments and messages that were lost; always 0 with memq://.

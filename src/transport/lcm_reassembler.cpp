@@ -111,13 +111,13 @@ std::optional<LcmReassembler::Message> LcmReassembler::push_fragment(Bytes rest,
 bool LcmReassembler::store(PartialMessage& message, Fragment fragment, Bytes bytes) {
   const auto place = std::ranges::lower_bound(message.fragments, fragment.number, {}, &Fragment::number);
   const bool is_duplicate = place != message.fragments.end() && place->number == fragment.number;
-  if (is_duplicate) return true;  // by the network
+  if (is_duplicate) return true;  // the network duplicated it
   message.last_progress = ++pushed_;
   const std::size_t needed = message.payload.size() + bytes.size();
   if (needed > message.size) return false;
   const std::size_t before = message.allocated();
   if (needed > message.payload.capacity()) {
-    // At most twice of what has arrived, so that a sender pays for the memory that it takes.
+    // The capacity at most doubles what has arrived, so that a sender pays for the memory that it takes.
     const std::size_t capacity = std::max(needed, std::min(2 * message.payload.capacity(), message.size));
     make_room(message, capacity - message.payload.capacity());
     message.payload.reserve(capacity);
@@ -133,7 +133,7 @@ bool LcmReassembler::store(PartialMessage& message, Fragment fragment, Bytes byt
 
 void LcmReassembler::make_room(const PartialMessage& message, std::size_t bytes) {
   while (allocated_ + bytes > kMaxPartialBytes) {
-    // What a complete message left is freed first, then what makes no progress.
+    // The memory that complete messages left is freed first, then that of messages without progress.
     PartialMessage* victim = nullptr;
     const auto rank = [](const PartialMessage& partial) {
       return std::pair(!partial.fragments.empty(), partial.last_progress);

@@ -4,10 +4,10 @@
 //
 // Memory is bounded for any input (liblcm stores every channel name that it has received): at most
 // kMaxPartialMessages are incomplete at a time, and they take kMaxPartialBytes. Memory is allocated as
-// fragments arrive, whatever size the first one states. If there are more, the message is discarded that has
-// received no fragment for the longest time, so that forged fragments replace each other and not a message
-// that arrives. A message no larger than an earlier one of its sender needs no allocation; one for which
-// there is no memory is lost.
+// fragments arrive, whatever size the first one states. Beyond these limits, the message that has received
+// no fragment for the longest time is discarded, so that forged fragments replace each other and not a
+// message that arrives. A message no larger than an earlier one of its sender needs no allocation; one for
+// which there is no memory is lost.
 #pragma once
 
 #include <cstddef>
@@ -76,11 +76,11 @@ class LcmReassembler {
   // Consumes the channel name and its NUL. nullopt: the channel was not added.
   std::optional<std::size_t> read_channel(Bytes& rest) const;
   PartialMessage& claim_slot(std::uint64_t sender);
-  // False: it overlaps others.
+  // Returns false if its bytes are more than the message has left.
   bool store(PartialMessage& message, Fragment fragment, Bytes bytes);
   // Frees memory of others until this one may take so many bytes more.
   void make_room(const PartialMessage& message, std::size_t bytes);
-  // Puts the bytes into their order. False: the fragments have gaps or overlap.
+  // Puts the bytes into their order. Returns false if the fragments have gaps or overlap.
   bool assemble(PartialMessage& message);
   void discard(PartialMessage& message);
   void evict(PartialMessage& message);

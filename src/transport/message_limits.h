@@ -28,8 +28,8 @@ struct ReceiveBuffer {
   bool fixed_by_url = false;  // recv_buf_size
 };
 
-// The warning that a message may lose packets because the receive buffer is too small for it; nullopt: it is
-// not. subject: "request for 100000 bodies".
+// Returns a warning if a message may lose packets because the receive buffer is too small for it, else
+// nullopt. subject: "request for 100000 bodies".
 std::optional<Warning> receive_buffer_warning(const std::string& subject, std::size_t message_bytes,
                                               std::string_view channel, const ReceiveBuffer& buffer);
 
@@ -48,7 +48,7 @@ std::size_t receive_buffer_for(std::size_t message_bytes);
 // net.core.rmem_max. Returns the size that was granted; 0: the descriptor is no socket (errno says why).
 std::size_t set_receive_buffer(int socket, std::size_t bytes);
 
-// What set_receive_buffer() would grant in this process, found out with a socket of its own; 0: unknown.
+// Returns what set_receive_buffer() would grant in this process, tested with a new socket; 0: unknown.
 std::size_t grantable_receive_buffer(std::size_t bytes);
 
 }  // namespace buoyancy

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kResendMilliseconds = 100;
 
-// From LCM's documentation for a machine without a network, as iproute2 commands.
+// LCM's documentation advises this for a machine without a network; these are the iproute2 commands.
 constexpr const char* kHint =
     "To keep LCM on this machine, run as root: "
     "ip link set lo up && ip link set lo multicast on && ip route add 224.0.0.0/4 dev lo";

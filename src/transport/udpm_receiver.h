@@ -72,7 +72,7 @@ class UdpmReceiver {
 
   // Makes the kernel truncate the packets of this sender from now on, so that they become no messages. They
   // are not dropped, because the kernel counts packets that a filter drops as receive-buffer overflows.
-  // False: the kernel rejected the filter; nothing changed.
+  // Returns false if the kernel rejected the filter; nothing has changed then.
   bool truncate_packets_of(const Sender& sender);
 
   int fileno() const { return socket_.value(); }  // readable when a packet of any channel is pending
