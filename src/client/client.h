@@ -49,12 +49,12 @@ class Client {
   // the next request. Precondition: ClientOptions::channel.wait_for_loads; there are none otherwise.
   const BodiesLoads& loads() const;
 
-  // A service that has another scene than the caller, if ChannelOptions::scene_fingerprint is set; nullptr:
+  // Warns of a service whose scene is not the caller's, if ChannelOptions::scene_fingerprint is set; nullptr:
   // none has been seen. The service states its scene when a session begins, and once a second.
   const Warning* scene_warning() const;
 
-  // The next status that a service publishes, which is due once a second, within this time [s]; valid until
-  // the next call. Errors: none arrives.
+  // Waits at most this time [s] for the next status of a service, which is due once a second. The status is
+  // valid until the next call. Errors: none arrives.
   Expected<const ServiceStatus*> status(double timeout = 2.0);
 
   ClientStats statistics() const;
@@ -68,10 +68,10 @@ class Client {
   RequestId next_;  // of the next request
 };
 
-// A random session_id >= 0. The probability that it equals a given other one is 2^-63.
+// Draws a random session_id >= 0. The probability that it equals a given other one is 2^-63.
 std::int64_t make_session_id();
 
-// The loads of a body, or nullptr if it has no such output. Complexity: O(bodies).
+// Returns the loads of a body, or nullptr if it has no such output. Complexity: O(bodies).
 const BodyLoads* find_loads(const BodiesLoads& loads, std::int32_t body_id);
 
 // The first wrench whose status is not kOk, or nullptr. A simulator must not continue without a body's force.

@@ -12,10 +12,10 @@
 
 namespace buoyancy {
 
-// The force and the torque about the reference point.
+// Returns the force and the torque about the reference point.
 Vec6 wrench_of(const BodyWrench& wrench);
 
-// s A and the damping.
+// Returns the scaled added mass s A and the damping.
 HydrodynamicMatrices matrices_of(const BodyLoads& loads);
 
 // reference_B: [m], the scene's reference_point of the body. state: the one that the loads belong to.

@@ -33,7 +33,7 @@ class FreeRunningClient {
   // the request's own or the interval is over. The first request waits as in lock-step mode, since there is
   // no earlier response to use.
   Expected<const WrenchResponse*> request(const BorrowedRequest& request);
-  // Of the response that was returned last, see ChannelOptions::wait_for_loads.
+  // The loads of the response that was returned last, see ChannelOptions::wait_for_loads.
   const BodiesLoads& loads() const { return channel_.latest_loads(); }
   // See LcmRequestChannel.
   const ServiceStatus* wait_for_status(Clock::time_point deadline) {

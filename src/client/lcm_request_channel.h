@@ -67,7 +67,7 @@ class LcmRequestChannel {
   Expected<std::optional<Warning>> reserve(std::size_t bodies);
 
   // Sets what is published before every request, and what before every one that is sent again, until the next
-  // call. At first nothing is.
+  // call. Initially nothing is published.
   void set_conditions(std::span<const ConditionChange> announced, std::span<const ConditionChange> repeated);
 
   // Encodes and publishes the request. Precondition: session_id is constant, seq does not decrease. Errors:
@@ -79,7 +79,7 @@ class LcmRequestChannel {
   // Waits until a response with at least this seq has arrived, at most until the deadline. Processes messages
   // that have already arrived even if the deadline has passed. Returns false if there is no such response.
   bool wait_for(std::int64_t seq, Clock::time_point deadline);
-  // Waits for the next status of a service. nullptr: none has arrived until the deadline.
+  // Waits for the next status of a service. Returns nullptr if none arrives before the deadline.
   const ServiceStatus* wait_for_status(Clock::time_point deadline);
   // The session's responses that arrived during the last wait_for(), including duplicates and old ones.
   const std::vector<ResponseArrival>& arrivals() const { return inbox_->arrivals; }
@@ -91,16 +91,16 @@ class LcmRequestChannel {
   bool waits_for_loads() const { return options_.wait_for_loads; }
   // Messages that were ignored because they are not valid, see ClientStats::malformed.
   std::int64_t malformed() const { return inbox_->malformed; }
-  // The first service that has another scene; nullptr: none has been seen, or nothing is compared.
+  // Warns of the first service that has another scene; nullptr: none has been seen, or none is compared.
   const Warning* scene_warning() const { return inbox_->scene_warning ? &*inbox_->scene_warning : nullptr; }
-  // What two responses to one request say, the first time that they differ; empty: they agree.
+  // Describes the first two responses to one request that contradict each other; empty: there were none.
   const std::string& contradiction() const { return inbox_->contradiction; }
   bool cancelled() const {
     return (options_.cancelled != nullptr && options_.cancelled->load()) ||
            (options_.is_interrupted && options_.is_interrupted());
   }
 
-  // Why the response to the last request may not have arrived, or its loads, in parts of an Error.
+  // Explains, as parts of an Error, why the response to the last request, or its loads, may be missing.
   struct Explanation {
     std::string cause, hint;
   };
@@ -122,7 +122,7 @@ class LcmRequestChannel {
     BodiesLoads latest_loads;
     WrenchResponse incoming;     // reused
     BodiesLoads incoming_loads;  // reused
-    // The newest that wait for each other; nullopt: none is newer than the latest.
+    // The newest response and loads that wait for each other; nullopt: none is newer than `latest`.
     std::optional<std::int64_t> response_seq, loads_seq;
     WrenchResponse response;
     BodiesLoads loads;

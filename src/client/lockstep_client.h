@@ -26,7 +26,7 @@ class LockstepClient {
   Expected<std::optional<Warning>> reserve(std::size_t bodies) { return channel_.reserve(bodies); }
 
   Expected<const WrenchResponse*> request(const BorrowedRequest& request);
-  // Of the response that was returned last, see ChannelOptions::wait_for_loads.
+  // The loads of the response that was returned last, see ChannelOptions::wait_for_loads.
   const BodiesLoads& loads() const { return channel_.latest_loads(); }
   // See LcmRequestChannel.
   const ServiceStatus* wait_for_status(Clock::time_point deadline) {

@@ -12,7 +12,7 @@ std::string subject(const LcmRequestChannel& channel, std::int64_t seq) {
   return "request " + std::to_string(seq) + " on " + channel.describe_endpoint();
 }
 
-// The first body of the loads that is not among those of the request that follow the one before.
+// Returns the first body of the loads that breaks the request's order, or is not in the request.
 const BodyLoads* find_other_body(const BorrowedRequest& request, const BodiesLoads& loads) {
   auto next = request.bodies.begin();
   for (const BodyLoads& body : loads.bodies) {

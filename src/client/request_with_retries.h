@@ -17,8 +17,8 @@ Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
                                                      const RetryPolicy& retry_policy,
                                                      ClientStats& statistics);
 
-// Returns the response, or an error if it does not hold the request's bodies in the request's order, or its
-// loads others.
+// Returns the response, or an error if it does not hold the request's bodies in the request's order, or if
+// its loads hold other bodies.
 Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel,
                                                const BorrowedRequest& request,
                                                const WrenchResponse& response);

@@ -1,7 +1,7 @@
-// How often and for how long LockstepClient and FreeRunningClient wait for a response.
+// Limits how often and for how long LockstepClient and FreeRunningClient wait for a response.
 //
 // Contract of both clients: a response holds as many bodies as its request, in the same order, and is valid
-// until the next call; so are its loads, where they are waited for, of those bodies that have this output.
+// until the next call; so are its loads of the bodies with this output, where the client waits for them.
 // Errors of both: no response in time, or none with loads, a failure of the transport (in lock-step mode only
 // once the retries are used up), a response with other bodies than requested, cancellation while waiting.
 #pragma once
