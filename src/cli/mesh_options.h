@@ -18,18 +18,18 @@ namespace buoyancy {
 void add_scale_option(CLI::App& app, std::string& scale, CLI::Option* mesh);
 void add_up_option(CLI::App& app, std::optional<std::string>& up, CLI::Option* mesh);
 
-// Of --scale. Errors: neither a finite number above 0 nor three finite factors X,Y,Z of
+// Parses the text of --scale. Errors: it is neither a finite number above 0 nor three finite factors X,Y,Z of
 // which none is 0.
 Expected<Vec3> parse_scale(const std::string& text);
 
-// The unit vector of x, +x, -x and so on. subject: the option, for errors. Errors: any other text.
+// Returns the unit vector of x, +x, -x and so on. subject: the option, for errors. Errors: any other text.
 Expected<Vec3> parse_axis(const std::string& subject, const std::string& text);
 
-// Three finite numbers X,Y,Z.
+// Parses three finite numbers X,Y,Z.
 std::optional<Vec3> parse_vector(std::string_view text);
 
-// Of --scale and --up: the axis of --up, one of the file, becomes +z; nullopt turns nothing. Errors: those of
-// parse_scale() and parse_axis().
+// Returns the placement by --scale and --up: the file's axis of --up becomes +z, unless it is nullopt.
+// Errors: those of parse_scale() and parse_axis().
 Expected<MeshPlacement> placement_of(const std::string& scale, const std::optional<std::string>& up);
 
 }  // namespace buoyancy

@@ -23,7 +23,7 @@ struct PoseOptions {
 
 // Declares all of the options on app; parsing fills options, which must live as long.
 void add_options(CLI::App& app, PoseOptions& options);
-// The same for programs that only display the poses and the responses.
+// Declares them for programs that only display the poses and the responses.
 void add_viewer_options(CLI::App& app, PoseOptions& options);
 // Declares --pose and --force-torque only, for such programs if velocities do not matter to them.
 void add_viewer_channel_options(CLI::App& app, PoseOptions& options);
@@ -35,8 +35,8 @@ void add_viewer_channel_options(CLI::App& app, PoseOptions& options);
 Expected<PoseChannels> resolve_pose_channels(const PoseOptions& options, const Scene& scene,
                                              const std::vector<std::string>& reserved);
 
-// For programs that respond to the poses. Errors: a body with drag or added mass, whose velocities are needed
-// and whose frame is not given.
+// Checks the poses for programs that respond to them. Errors: a body with drag or added mass, which needs
+// velocities, whose frame is not given.
 Expected<void> check_velocities_usable(const PoseChannels& poses, const Scene& scene);
 
 }  // namespace buoyancy

@@ -24,10 +24,10 @@ class ToolCommandLine {
   // cannot be combined with it.
   void add_flag(const std::string& name, bool& value, const std::string& description,
                 const std::string& excluded = "");
-  // For std::string, std::filesystem::path and std::uint64_t.
+  // Value is std::string, std::filesystem::path or std::uint64_t.
   template <typename Value>
   void add_option(const std::string& name, Value& value, const std::string& description);
-  // For int, unsigned and std::int64_t.
+  // Number is int, unsigned or std::int64_t.
   template <typename Number>
   void add_number(const std::string& name, Number& value, Number min, Number max,
                   const std::string& description, bool show_default = false);
