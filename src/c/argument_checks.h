@@ -31,7 +31,7 @@ class ArgumentChecks {
   // text: UTF-8 with a final zero byte.
   std::string_view text(const char* name, const char* text);
 
-  // nullptr if there is no handle of this kind.
+  // Returns nullptr if there is no handle of this kind.
   template <typename Handle>
   const Handle* handle(const char* name, const Handle* handle) {
     return has_handle(name, handle, kKindOf<Handle>) ? handle : nullptr;
@@ -46,14 +46,14 @@ class ArgumentChecks {
       has_handle(name, handle, kKindOf<Handle>);
     }
   }
-  // The place of a new handle, which is NULL until the call succeeds.
+  // Checks the place of a new handle, and sets it to NULL until the call succeeds.
   template <typename Handle>
   void out_handle(const char* name, Handle** out) {
     not_null(name, static_cast<const void*>(out));
     if (out != nullptr) *out = nullptr;
   }
 
-  // A struct that the caller passes. nullptr if it is NULL or its size is none that it has had.
+  // Returns a struct that the caller passes; nullptr if it is NULL or does not state this version's size.
   template <typename Struct>
   const Struct* given(const char* name, const Struct* value) {
     not_null(name, value);
@@ -66,7 +66,7 @@ class ArgumentChecks {
   }
   bool has_size(const char* name, std::size_t size, std::size_t expected);
 
-  // n items of `per_item` elements each; the array may be NULL if n is 0. Empty if a check has failed.
+  // Returns n items of `per_item` elements each, or none if a check has failed. NULL is allowed if n is 0.
   template <typename Number>
   std::span<Number> array(const char* name, Number* elements, std::int64_t n, std::size_t per_item = 1) {
     if (n <= 0 || failed()) return {};
@@ -75,13 +75,13 @@ class ArgumentChecks {
     if (failed()) return {};
     return {elements, per_item * static_cast<std::size_t>(n)};
   }
-  // The same, or none if the array is NULL.
+  // Returns the same, or none if the array is NULL.
   template <typename Number>
   std::span<Number> optional_array(const char* name, Number* elements, std::int64_t n,
                                    std::size_t per_item = 1) {
     return elements == nullptr ? std::span<Number>() : array(name, elements, n, per_item);
   }
-  // The times of n poses or points. at_least: how many there must be where n is above 0.
+  // Returns the times of n poses or points. at_least: above 0 if there must be a time even for one pose.
   std::span<const std::int64_t> utimes(const std::int64_t* utimes, std::int64_t utime_count, std::int64_t n,
                                        std::int64_t at_least);
 
@@ -93,7 +93,7 @@ class ArgumentChecks {
   CallResult failure_;
 };
 
-// Whether there is a regular file that can be opened: what distinguishes the errors FILE and MESH or SCENE.
+// Returns whether a regular file can be opened: if not, the error is FILE, otherwise MESH or SCENE.
 bool is_readable_file(std::string_view path);
 
 // The largest number of poses and points in a call: no machine has memory for more.

@@ -12,10 +12,10 @@
 //   Every function that can fail returns a buoyancy_error: BUOYANCY_OK, or a code of which
 //   buoyancy_last_error() gives the reason. A call that fails sets a handle that it was to create to NULL;
 //   arrays of results may have been written in part. No function ends the process or lets a C++ exception
-//   out. Checked are: NULL, counts, enumerators, numbers, sizes of structs, and handles. What cannot be
-//   checked is whether an array is as long as its count says. A pose that cannot be evaluated, such as one
-//   that contains NaN, is no error of the call: the call returns BUOYANCY_OK, and the pose has its status in
-//   the array of statuses, and zeros.
+//   out. Calls check NULL, counts, enumerators, numbers, sizes of structs, and handles, but not whether an
+//   array is as long as its count says. A pose that cannot be evaluated, such as one that contains NaN, is no
+//   error of the call: the call returns BUOYANCY_OK, and the pose has its status in the array of statuses,
+//   and zeros.
 //
 // Threads
 //   Handles are immutable. Any number of threads may use one at once, in any function but the one that frees
@@ -25,7 +25,7 @@
 //   the machine, at most BUOYANCY_MAX_THREADS. Little work stays on the caller's thread. Results have the
 //   same bits for every number of threads.
 //   A thread that calls a function needs BUOYANCY_STACK_SIZE bytes of stack. A thread that calls none needs
-//   nothing of it: what a thread needs from call to call is on the heap.
+//   none of them: what a thread keeps between calls is on the heap.
 //
 // Floating point
 //   Results do not depend on the caller's rounding mode, its treatment of subnormal numbers or its
@@ -60,9 +60,9 @@ extern "C" {
 
 // ---------- version and errors
 
-// "1.0.0", of the library that runs. Never freed.
+// Returns the version of the library that runs, such as "1.0.0". The string is never freed.
 BUOYANCY_API const char* buoyancy_version(void);
-// 10000 major + 100 minor + patch of the same.
+// Returns 10000 major + 100 minor + patch of that version.
 BUOYANCY_API int32_t buoyancy_version_number(void);
 
 typedef int32_t buoyancy_error;
@@ -77,11 +77,11 @@ enum {
   BUOYANCY_ERROR_INTERNAL = 7           // a mistake of the library; please report it
 };
 
-// The reason why the last call of this thread that failed did: one line of UTF-8 with the value at fault,
+// Returns why the last failed call of this thread failed: one line of UTF-8 with the value at fault,
 // what was expected, and often the likely cause and what to do. Empty if no call has failed. Valid until the
 // thread's next call that fails. Calls that succeed leave it as it is.
 BUOYANCY_API const char* buoyancy_last_error(void);
-// "OK", "INVALID_ARGUMENT" and so on, "UNKNOWN_ERROR" for any other value. Never freed.
+// Returns "OK", "INVALID_ARGUMENT" and so on, "UNKNOWN_ERROR" for any other value. It is never freed.
 BUOYANCY_API const char* buoyancy_error_name(buoyancy_error error);
 
 // Why a pose has no result. The values are those of the service's messages.
@@ -97,7 +97,7 @@ enum {
   // In waves: the bound on the force's error is above the weight of the water that the whole body displaces.
   BUOYANCY_STATUS_NOT_CERTIFIED = 10
 };
-// "OK", "NON_FINITE_POSE" and so on, "UNKNOWN_STATUS" for any other value. Never freed.
+// Returns "OK", "NON_FINITE_POSE" and so on, "UNKNOWN_STATUS" for any other value. It is never freed.
 BUOYANCY_API const char* buoyancy_status_name(int32_t status);
 
 // ---------- sea
@@ -110,7 +110,7 @@ typedef struct buoyancy_sea buoyancy_sea;
 // process's current one. Errors: SCENE, also for waves = "received". Complexity: O(wave components).
 BUOYANCY_API buoyancy_error buoyancy_sea_from_toml(const char* toml, const char* directory,
                                                    buoyancy_sea** sea);
-// NULL is allowed. Errors: HANDLE.
+// Frees a handle; NULL is allowed. Errors: HANDLE.
 BUOYANCY_API buoyancy_error buoyancy_sea_free(buoyancy_sea* sea);
 
 typedef struct buoyancy_sea_info {
@@ -135,11 +135,11 @@ BUOYANCY_API buoyancy_error buoyancy_sea_get_info(const buoyancy_sea* sea, buoya
 BUOYANCY_API buoyancy_error buoyancy_sea_elevations(const buoyancy_sea* sea, int64_t count, const double* x1,
                                                     const double* x2, const int64_t* utimes,
                                                     int64_t utime_count, double* elevations, int32_t threads);
-// The water at points in the world: positions [m], 3 count. Sets those arrays that are not NULL: pressures
-// [Pa] over that of the air, of the waves and of the water at rest together, 0 above the surface, count;
-// velocities [m/s], of current and waves, and accelerations [m/s^2], W, 3 count, above the surface those of
-// the surface below. Accelerations are those that an observer sees who drifts with the current.
-// Everything else as in buoyancy_sea_elevations().
+// Evaluates the water at positions [m], W, 3 count. Sets those arrays that are not NULL: gauge pressures
+// [Pa], of the waves and of the water at rest together, 0 above the surface, count; velocities [m/s], of
+// current and waves, and accelerations [m/s^2], W, 3 count, above the surface those of the surface below.
+// Accelerations are those that an observer sees who drifts with the current. Everything else is as in
+// buoyancy_sea_elevations().
 BUOYANCY_API buoyancy_error buoyancy_sea_water_at(const buoyancy_sea* sea, int64_t count,
                                                   const double* positions, const int64_t* utimes,
                                                   int64_t utime_count, double* pressures, double* velocities,
@@ -183,9 +183,9 @@ typedef struct buoyancy_wrenches {
   double* torque_error_bounds;  // [N m], likewise; n
 } buoyancy_wrenches;
 
-// Hydrostatics, one per pose. NaN: undefined, as a waterplane's centroid where there is no waterplane. In
-// pairs the first belongs to the smaller of the two second moments of the waterplane. Set to NULL what you do
-// not want.
+// Hydrostatics, one per pose. Undefined values are NaN, such as a waterplane's centroid where there is no
+// waterplane. The first of a pair belongs to the smaller second moment of the waterplane. Set to NULL what
+// you do not want.
 typedef struct buoyancy_hydrostatics {
   size_t size;                        // sizeof(buoyancy_hydrostatics)
   int32_t* statuses;                  // n
@@ -245,12 +245,12 @@ BUOYANCY_API buoyancy_error buoyancy_mesh_load(const char* path, const buoyancy_
 BUOYANCY_API buoyancy_error buoyancy_mesh_create(const double* vertices, int64_t vertex_count,
                                                  const int32_t* faces, int64_t face_count,
                                                  const buoyancy_mesh_options* options, buoyancy_mesh** mesh);
-// The same with numbers of 64 bits.
+// Does the same with vertex numbers of 64 bits.
 BUOYANCY_API buoyancy_error buoyancy_mesh_create_64(const double* vertices, int64_t vertex_count,
                                                     const int64_t* faces, int64_t face_count,
                                                     const buoyancy_mesh_options* options,
                                                     buoyancy_mesh** mesh);
-// NULL is allowed. Errors: HANDLE.
+// Frees a handle; NULL is allowed. Errors: HANDLE.
 BUOYANCY_API buoyancy_error buoyancy_mesh_free(buoyancy_mesh* mesh);
 
 // What validation found.
@@ -295,8 +295,8 @@ BUOYANCY_API buoyancy_error buoyancy_mesh_query(const buoyancy_mesh* mesh, const
                                                 buoyancy_method method, double tolerance,
                                                 const buoyancy_poses* poses,
                                                 const buoyancy_wrenches* wrenches, int32_t threads);
-// Hydrostatics at n poses in water at rest: water has no sea with waves. center_of_mass [m], B: 3 numbers,
-// for GM; NULL: unknown. Errors and complexity: those of HIERARCHICAL.
+// Evaluates hydrostatics at n poses in water at rest, without a sea with waves. center_of_mass [m], B: 3
+// numbers, for GM; NULL: unknown. Errors and complexity: those of HIERARCHICAL.
 BUOYANCY_API buoyancy_error buoyancy_mesh_hydrostatics(const buoyancy_mesh* mesh, const buoyancy_water* water,
                                                        const double* center_of_mass,
                                                        const buoyancy_poses* poses,
@@ -308,16 +308,16 @@ BUOYANCY_API buoyancy_error buoyancy_mesh_hydrostatics(const buoyancy_mesh* mesh
 // The water, the waves and the bodies of a scene file (docs/scene_file.md).
 typedef struct buoyancy_scene buoyancy_scene;
 
-// Errors: FILE for the scene file itself; SCENE for everything in it, meshes included. See
+// Loads a scene file. Errors: FILE for the file itself; SCENE for everything in it, meshes included. See
 // buoyancy_mesh_load() for the import of meshes.
 BUOYANCY_API buoyancy_error buoyancy_scene_load(const char* path, buoyancy_scene** scene);
 // toml: the text of a scene file, in UTF-8. directory: where files that it names are looked up; NULL: the
 // process's current one. Errors: SCENE.
 BUOYANCY_API buoyancy_error buoyancy_scene_from_toml(const char* toml, const char* directory,
                                                      buoyancy_scene** scene);
-// NULL is allowed. Errors: HANDLE.
+// Frees a handle; NULL is allowed. Errors: HANDLE.
 BUOYANCY_API buoyancy_error buoyancy_scene_free(buoyancy_scene* scene);
-// The scene's sea as a handle of its own, to be freed as any other. Errors: SCENE where waves are received.
+// Makes a handle of the scene's sea, to be freed like any other. Errors: SCENE where waves are received.
 BUOYANCY_API buoyancy_error buoyancy_scene_sea(const buoyancy_scene* scene, buoyancy_sea** sea);
 
 typedef struct buoyancy_body_info {
@@ -333,7 +333,7 @@ typedef struct buoyancy_body_info {
   int32_t has_loads;         // 1: drag or added mass, so that velocities matter
   int32_t has_hydrostatics;  // 1: buoyancy_scene_hydrostatics() works for it
 } buoyancy_body_info;
-// Number of bodies. Errors: HANDLE, INVALID_ARGUMENT.
+// Sets the number of bodies. Errors: HANDLE, INVALID_ARGUMENT.
 BUOYANCY_API buoyancy_error buoyancy_scene_body_count(const buoyancy_scene* scene, int64_t* count);
 // Sets all members but the size. index: 0 to the number of bodies - 1, in the order of the file. Errors:
 // HANDLE, INVALID_ARGUMENT.
@@ -364,8 +364,8 @@ BUOYANCY_API buoyancy_error buoyancy_scene_query(const buoyancy_scene* scene, in
                                                  const buoyancy_poses* poses,
                                                  const buoyancy_wrenches* wrenches,
                                                  const buoyancy_loads* loads, int32_t threads);
-// Hydrostatics of a body at n poses. Errors: those of buoyancy_scene_query(); SCENE for a scene with waves,
-// and for a body of another method than HIERARCHICAL whose outputs do not list "hydrostatics".
+// Evaluates hydrostatics of a body at n poses. Errors: those of buoyancy_scene_query(); SCENE for a scene
+// with waves, and for a body of another method than HIERARCHICAL whose outputs do not list "hydrostatics".
 BUOYANCY_API buoyancy_error buoyancy_scene_hydrostatics(const buoyancy_scene* scene, int32_t body_id,
                                                         const buoyancy_poses* poses,
                                                         const buoyancy_hydrostatics* hydrostatics,

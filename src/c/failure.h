@@ -27,7 +27,7 @@ using CallBody = CallResult (*)(void* context);
 buoyancy_error run_call(CallBody call, void* context) noexcept;
 
 // Makes the call and returns its code. A failure becomes this thread's last error, and so does an exception.
-// No std::function: to make one may throw, outside of what catches.
+// It takes no std::function, since making one may throw outside of the code that catches exceptions.
 template <typename Call>
 buoyancy_error run_call(Call&& call) noexcept {
   return run_call([](void* context) { return (*static_cast<std::remove_reference_t<Call>*>(context))(); },

@@ -1,4 +1,4 @@
-// The handles of the C interface, and which of them exist.
+// The handles of the C interface, and a registry of those that exist.
 //
 // A call looks its handles up before it uses them, so that one that was freed, is of another kind or is no
 // handle at all is an error and never a crash. A lookup takes about 30 ns.
@@ -49,7 +49,7 @@ inline constexpr HandleKind kKindOf<buoyancy_scene> = HandleKind::kScene;
 
 const char* to_string(HandleKind kind);  // "a mesh"
 
-// kNone: there is no handle with this address.
+// Returns kNone if there is no handle with this address.
 HandleKind kind_of(const void* handle);
 void add_handle(const void* handle, HandleKind kind);
 // Returns false, and does nothing, if there is no handle of this kind with this address.

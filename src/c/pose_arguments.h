@@ -1,4 +1,4 @@
-// The water, the poses and the arrays of results of the C interface, as src/query takes them.
+// Converts water, poses and arrays of results from the C interface to what src/query takes.
 #pragma once
 
 #include <cstddef>
@@ -41,7 +41,7 @@ void check_hydrostatics(ArgumentChecks& checks, const buoyancy_hydrostatics& giv
 void store_hydrostatics(std::span<const BodyHydrostatics> hydrostatics, const buoyancy_hydrostatics& out,
                         std::size_t first);
 
-// Poses [first, first + n) of an array, and likewise their wrenches.
+// Return the poses [first, first + n) of an array, and likewise their wrenches.
 PoseArrays part_of(const PoseArrays& poses, std::size_t first, std::size_t n);
 WrenchArrays part_of(const WrenchArrays& wrenches, std::size_t first, std::size_t n);
 
@@ -49,7 +49,7 @@ WrenchArrays part_of(const WrenchArrays& wrenches, std::size_t first, std::size_
 void evaluate_hydrostatics(const Body& body, const Water& water, const PoseArrays& poses,
                            const buoyancy_hydrostatics& out, unsigned threads);
 
-// Poses of a block: what does not go straight into the caller's arrays takes 1 kB per pose.
+// The poses of one block: results that do not go straight into the caller's arrays take 1 kB per pose.
 inline constexpr std::size_t kBlock = 8192;
 
 }  // namespace buoyancy

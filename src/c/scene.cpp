@@ -24,7 +24,7 @@ bool has_hydrostatics(const buoyancy_scene& scene, const Body& body) {
   return body.solver.mesh().tree.has_value() && scene.water.waves == nullptr && scene.water.is_known;
 }
 
-// A failure unless the scene has the body.
+// Returns a failure unless the scene has the body.
 CallResult find_body(const buoyancy_scene& scene, std::int32_t id, const Body*& body) {
   body = scene.scene.find(id);
   if (body != nullptr) return {};
