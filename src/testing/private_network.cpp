@@ -50,7 +50,7 @@ sockaddr address(const char* text) {
   return generic;
 }
 
-// ip link set lo up && ip route add 224.0.0.0/4 dev lo, which must not require the package iproute2.
+// Does `ip link set lo up && ip route add 224.0.0.0/4 dev lo` without the package iproute2.
 bool set_up_loopback() {
   const UniqueFd socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   ifreq interface {};

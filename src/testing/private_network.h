@@ -1,4 +1,4 @@
-// Gives a test LCM's multicast where the machine has none, without root: a network of its own.
+// Gives a test a network of its own, and thereby LCM's multicast where the machine has none, without root.
 #pragma once
 
 #include "base/error.h"

@@ -64,7 +64,7 @@ UniqueFd lock(int number) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::string name = "buoyancy-testing-" + std::to_string(number);
-  std::memcpy(address.sun_path + 1, name.data(), name.size());  // the leading zero: abstract
+  std::memcpy(address.sun_path + 1, name.data(), name.size());  // a leading zero makes it abstract
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
   sockaddr_storage generic{};
   std::memcpy(&generic, &address, sizeof address);
@@ -102,7 +102,7 @@ std::string contents(int fd) {
   }
 }
 
-// The child of fork(): no memory may be allocated between fork and exec.
+// Runs in the child of fork(): no memory may be allocated between fork and exec.
 [[noreturn]] void execute(char* const* arguments, int log, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
@@ -149,8 +149,8 @@ struct ServiceProcess::Impl {
     return {};
   }
 
-  // Starts a program. The kernel ends it when the thread that started it ends, which therefore lives as long,
-  // whatever becomes of the thread that calls this. Returns 0 or an error of fork().
+  // Starts a program. The kernel ends it when the thread that forked it ends. That is therefore a thread of
+  // its own, which outlives the program even if the calling thread ends. Returns 0 or an error of fork().
   int start(char* const* arguments) {
     std::promise<int> started;
     std::future<int> result = started.get_future();
@@ -189,7 +189,7 @@ struct ServiceProcess::Impl {
   bool wait_for_log(const std::string& text, double seconds) {
     bool found = false;
     wait(seconds, [&] {
-      const bool ended = has_ended();  // asked before the log is read, which is complete then
+      const bool ended = has_ended();  // checked first: after the end the log is complete
       found = contents(log.value()).find(text) != std::string::npos;
       return found || ended;
     });

@@ -22,7 +22,7 @@ namespace buoyancy::testing {
 struct ServiceOptions {
   std::filesystem::path scene;         // a scene file
   std::string scene_text;              // or its text, in which paths of meshes are absolute
-  std::vector<std::string> arguments;  // more of buoyancyd's, such as {"--inject", "drop=0.1"}
+  std::vector<std::string> arguments;  // of buoyancyd, such as {"--inject", "drop=0.1"}
   std::filesystem::path program;       // empty: $BUOYANCYD, else buoyancyd in $PATH
   double ready_timeout = 60.0;         // [s], > 0; large meshes take time to load
 };

@@ -23,7 +23,7 @@ namespace buoyancy::testing {
 // Each test starts a service and stops it at its end. A test that failed reports the log of the service.
 class ServiceTest : public ::testing::Test {
  protected:
-  // What to start.
+  // Returns what to start.
   virtual ServiceOptions service_options() const = 0;
 
   // Precondition: SetUp() has not failed.
@@ -39,7 +39,7 @@ class ServiceTest : public ::testing::Test {
     if (!service_) return;
     const int exit_code = service_->stop();
     EXPECT_EQ(exit_code, 0) << "buoyancyd ended with this exit code";
-    // A failure of its own, so that reports in files have the log too.
+    // The log is a failure of its own, so that reports in files contain it too.
     if (HasFailure()) ADD_FAILURE() << "The log of buoyancyd:\n" << service_->log();
   }
 
