@@ -28,7 +28,7 @@ namespace {
 constexpr double kMaxSteps = 1e15;  // integers up to this value are exact as doubles
 constexpr std::int64_t kMaxCount = std::int64_t{1} << 40U;
 constexpr std::int64_t kMaxDelaySteps = 10000;  // bounds the number of responses that are kept
-// Between two looks at the signals: a look is a system call, which a step of a small body would notice.
+// Signals are checked only this often: a check is a system call, which is slow beside a small body's step.
 constexpr std::chrono::milliseconds kSignalInterval{10};
 
 struct Arguments {
@@ -116,7 +116,7 @@ Expected<void> check_arguments(const Arguments& arguments, double steps) {
   return check_lcm_url(channel.lcm_url);
 }
 
-// bodies: number of bodies of a request. Sets warning if their responses may be lost.
+// bodies: number of bodies in a request. Sets warning if the responses may be lost.
 Expected<SimulationClient> make_client(const Arguments& arguments, const Scene& scene, std::size_t bodies,
                                        std::optional<Warning>& warning) {
   if (arguments.embedded) return SimulationClient(InProcessClient(scene));

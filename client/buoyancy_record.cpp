@@ -25,11 +25,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Messages wait in it while the disk is busy: half a minute of a simulator that sends 10 kB a thousand times
-// a second.
+// [bytes]. The buffer holds what arrives while the disk is busy: half a minute of a simulator that sends 10
+// kB a thousand times a second.
 constexpr std::size_t kReceiveBuffer = std::size_t{256} << 20U;
 constexpr std::chrono::milliseconds kFlushInterval{500};
-constexpr int kMessagesPerPoll = 256;  // then signals are looked at
+constexpr int kMessagesPerPoll = 256;  // signals are checked after so many
 
 struct Arguments {
   std::string output;
@@ -63,7 +63,7 @@ class Recorder {
     return {};
   }
 
-  // Until a signal arrives.
+  // Records until a signal arrives.
   Expected<void> run(TerminationSignals& signals) {
     file_.give_up_after(signals.fileno());
     Clock::time_point flush_at = Clock::now() + kFlushInterval;
@@ -81,7 +81,7 @@ class Recorder {
                                  pollfd{signals.fileno(), POLLIN, 0}};
       ::poll(wait.data(), wait.size(), static_cast<int>(kFlushInterval.count()));
     }
-    while (connection_.handle_one()) {  // what had arrived when the signal came
+    while (connection_.handle_one()) {  // messages that had arrived before the signal
     }
     return written_ ? file_.flush() : written_;
   }

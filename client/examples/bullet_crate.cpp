@@ -27,7 +27,7 @@ std::array<double, 3> to_array(const btVector3& v) {
 class World {
  public:
   explicit World(const crate::Start& start) : body_(construction(shape_, start)) {
-    // The compensated wrench contains the weight: Bullet's gravity would not know of the added mass.
+    // The compensated wrench contains the weight: Bullet's gravity would ignore the added mass.
     dynamics_.setGravity(btVector3(0, 0, 0));
     body_.setActivationState(DISABLE_DEACTIVATION);  // a sleeping body would ignore the water
     dynamics_.addRigidBody(&body_);

@@ -64,8 +64,8 @@ inline buoyancy::RigidBodyMass mass() {
   return box;
 }
 
-// All that moves the crate, weight included, as a wrench that gives the mass of the crate alone the
-// acceleration which it has together with its added mass. loads: nullptr where there are none.
+// Returns the sum of all loads, weight included, as the wrench that gives the mass of the crate alone the
+// acceleration that it has together with its added mass. loads: nullptr where there are none.
 inline buoyancy::Vec6 total_wrench(const buoyancy::BodyState& state, const buoyancy::BodyWrench& wrench,
                                    const buoyancy::BodyLoads* loads, double step) {
   // The scene sets no reference_point: the wrench and the matrices are about the mesh's origin.

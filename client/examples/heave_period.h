@@ -5,7 +5,7 @@
 
 class HeavePeriod {
  public:
-  // In every step. time: [s]; velocity: [m/s], upwards.
+  // Call this in every step. time: [s]; velocity: [m/s], upwards.
   void add(double time, double velocity) {
     if (last_ && last_->velocity > 0.0 && velocity <= 0.0) {
       const double fraction = last_->velocity / (last_->velocity - velocity);
@@ -17,7 +17,7 @@ class HeavePeriod {
     last_ = {time, velocity};
   }
 
-  // [s], the mean between the first and the last time at which the body was highest; nullopt: fewer than two.
+  // Returns the mean period [s] from the first to the last maximum of the height; nullopt: fewer than two.
   std::optional<double> mean() const {
     if (tops_ < 2) return std::nullopt;
     return (last_top_ - *first_top_) / (tops_ - 1);

@@ -104,8 +104,8 @@ void apply_water(const WetBody& body, const buoyancy::BodyState& state, const bu
   Mat6 damping = water_damping;
   damping.leftCols<3>() -= added_mass.leftCols<3>() * buoyancy::cross_matrix(w);
   damping.rightCols<3>() += added_mass.leftCols<3>() * buoyancy::cross_matrix(v);
-  // MuJoCo's matrix is symmetric. The part of the damping that is not, of lift and Coriolis terms, remains
-  // explicit: it does no work over a small step.
+  // MuJoCo's matrix is symmetric. The antisymmetric part of the damping, from lift and Coriolis terms,
+  // remains explicit: it does no work over a small step.
   const Mat6 left_W = added_mass + 0.5 * model.opt.timestep * (damping + damping.transpose());
 
   // The rotational degrees of freedom are in the body's axes: turn the rows and columns of the rotation.
@@ -142,7 +142,7 @@ int fail(const std::string& message) {
   return 1;
 }
 
-// One step of the model in the water. Returns why it could not be made, or "".
+// Makes one step of the model in the water. Returns why that failed, or "".
 std::string step(const mjModel& model, mjData& data, std::vector<WetBody>& bodies, buoyancy::Client& client) {
   mj_step1(&model, &data);  // the mass matrix at this pose
   std::vector<buoyancy::BodyState> states;
@@ -188,7 +188,7 @@ int main(int argc, char** argv) {
       mj_loadXML(arguments.model.c_str(), nullptr, error.data(), static_cast<int>(error.size())));
   if (!model) return fail(arguments.model + ": " + error.data());
   if (model->opt.integrator != mjINT_EULER || model->opt.solver != mjSOL_NEWTON) {
-    // The others compute forces or factors of the mass matrix before the water's part is in it.
+    // The other ones compute forces, or factorise the mass matrix, before the water's terms are added to it.
     return fail(arguments.model +
                 ": use integrator=\"Euler\" and solver=\"Newton\", which are MuJoCo's defaults");
   }

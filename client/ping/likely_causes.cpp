@@ -14,8 +14,8 @@
 namespace buoyancy::ping {
 namespace {
 
-// Values that two causes share agree this well, relative to their size: better than any tolerance of a scene
-// would explain by chance, worse than rounding.
+// Relative difference up to which values inferred from two samples count as equal: too small for values that
+// agree by chance within a scene's tolerance, too large to be exceeded by rounding.
 constexpr double kSame = 1e-6;
 
 using Samples = std::vector<const DifferingWrench*>;
@@ -24,13 +24,13 @@ double volume_of(const DifferingWrench& sample) {
   return sample.body->solver.mesh().volume;
 }
 
-// Did the expected wrench displace all of the body?
+// Is the body fully submerged according to the expected wrench?
 bool is_submerged(const DifferingWrench& sample) {
   return std::abs(sample.expected.submerged_volume - volume_of(sample)) <= kSame * volume_of(sample);
 }
 
-// The common value of what every sample says; nullopt if they disagree or there are none. Samples about
-// which `value` says nothing are left out.
+// Returns the value that all samples share within kSame * scale; nullopt: they disagree, or none has a value.
+// Samples for which `value` returns nullopt are left out.
 template <typename Value>
 std::optional<double> common_value(const Samples& samples, double scale, const Value& value) {
   std::optional<double> common;
@@ -115,7 +115,7 @@ std::optional<double> weight_ratio(const Scene& scene, const Samples& samples) {
   return along_up ? ratio : std::nullopt;
 }
 
-// In waves every part of the wave load is proportional to density and gravity.
+// In waves the load is proportional to density times gravity. Returns the service's product over the scene's.
 std::optional<double> force_ratio(const Samples& samples) {
   return common_value(samples, 1.0, [](const DifferingWrench& sample) -> std::optional<double> {
     const Vec3 expected_W = to_vec3(sample.expected.force);
@@ -131,8 +131,8 @@ std::string describe_weight(const Water& water, double ratio) {
       ratio, ratio * water.density, water.density, ratio * water.gravity, water.gravity);
 }
 
-// The direction of all forces that are buoyancy alone; nullopt: they have none in common, or it is the
-// scene's up.
+// Returns the common direction of all forces that are buoyancy alone; nullopt: they differ in direction, or
+// it is the scene's up.
 std::optional<Vec3> other_up(const Scene& scene, const Samples& samples) {
   std::optional<Vec3> up_W;
   for (const DifferingWrench* sample : samples) {
@@ -156,7 +156,7 @@ bool is_inclined(const Scene& scene, const DifferingWrench& sample) {
   return horizontal_W.norm() > kSame * force_W.norm() + sample.received.force_error_bound;
 }
 
-// [m]. The level at which the body displaces the volume that was received.
+// Returns the level [m] at which the body displaces the volume that was received.
 double level_of(const Scene& scene, const DifferingWrench& sample) {
   constexpr int kMaxRounds = 60;
   const ValidatedPose validated = validate_pose(sample.state, 0.0);
@@ -177,9 +177,9 @@ double level_of(const Scene& scene, const DifferingWrench& sample) {
   return water.level;
 }
 
-// The level that would explain the volumes of all samples that tell.
+// Returns the level [m] that explains the volumes of all surface-piercing samples; nullopt: there is none.
 std::optional<double> other_level(const Scene& scene, const Samples& samples) {
-  constexpr double kLeast = 1e-3;  // of the volume, submerged and not submerged, so that the level is sharp
+  constexpr double kLeast = 1e-3;  // of the volume, above and below the water, so that the level is accurate
   constexpr std::size_t kEnough = 8;
   std::optional<double> level;
   std::size_t used = 0;

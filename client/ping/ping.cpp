@@ -17,10 +17,10 @@
 namespace buoyancy::ping {
 namespace {
 
-// Requests in a row without a reply after which the run ends; before the first reply: one.
+// The run ends after so many requests in a row without a reply; before the first reply, after one.
 constexpr std::int64_t kMaxUnansweredInARow = 3;
-// How long to look out for a status, which comes when a session begins and once a second, from the start of
-// the run.
+// How long to wait for a status, from the start of the run. The service publishes one when a session begins
+// and once a second.
 constexpr std::chrono::seconds kStatusTimeout{2};
 constexpr std::int64_t kTimeBetweenRequests = 100'000;  // [us], simulated
 
@@ -71,11 +71,11 @@ class Run {
   void set_sea(const Sea& sea) {
     surface_.level = sea.water().level;
     surface_.max_elevation = sea.max_elevation();
-    // Within the ramp, so that its shape is compared too.
+    // The first request lies within the ramp, so that its shape is compared too.
     first_utime_ = sea.time_origin() + static_cast<std::int64_t>(sea.ramp() * 0.5e6);
   }
 
-  // Takes over the sea that is to be published.
+  // Makes the request handler and the checks use the sea that is to be published.
   Expected<void> use_sea() {
     if (task_.sea.empty()) return {};
     if (Expected<void> used = handler_.receive_sea(task_.sea); !used) return used;
@@ -174,7 +174,7 @@ class Run {
                    " because this program's receive buffer was full";
       }
       fail(kResponsesCheck, message);
-      if (link.stats().undecodable.count > 0) return;  // which has causes of its own
+      if (link.stats().undecodable.count > 0) return;  // damaged messages have causes of their own
       link.wait_for_description(false, start_ + kStatusTimeout, signals_);
       add_cause(cause_of_silence(task_.link, link.url(), link.service()));
       return;

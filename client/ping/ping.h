@@ -25,7 +25,7 @@ struct PingTask {
   ByteVector sea;            // a sea_state_t to publish, for a scene that receives its sea; else empty
 };
 
-// What failed that is no difference of values.
+// A failure other than a difference of values.
 struct RunFailure {
   std::string check;  // one of kRunChecks
   std::string message;

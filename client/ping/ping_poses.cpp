@@ -70,7 +70,7 @@ Eigen::Quaterniond near_own_attitude(RandomNumbers& random) {
   return Eigen::Quaterniond(1.0, tilt.x(), tilt.y(), tilt.z()).normalized();
 }
 
-// [m], of the centre of a box over the level; reach: from its centre to its highest corner.
+// Returns the height [m] of a box's centre above the level. reach: [m], from there to its highest corner.
 double height_of_center(Immersion immersion, double reach, double max_elevation, RandomNumbers& random) {
   constexpr double kMaxOfReach = 0.9;
   if (immersion == Immersion::kPiercing) {

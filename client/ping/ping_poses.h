@@ -22,7 +22,7 @@ struct WaterSurface {
   double max_elevation = 0.0;  // [m], of the highest crest over it; 0 in still water
 };
 
-// Where the bounding box of the body with this index in the scene lies, in this request.
+// Returns where the bounding box of the body with this index in the scene lies in this request.
 Immersion immersion_of(std::int64_t request, std::size_t body);
 
 // Replaces states by those of this request: one of each body, in the order of the scene. O(bodies).

@@ -13,7 +13,7 @@ namespace buoyancy::ping {
 // One line per failure and per likely cause, for standard error; none if the service agrees.
 std::vector<std::string> failure_lines(const PingResult& result);
 
-// "2 of 5 replies differ; " and how.
+// "2 of 5 replies differ; " and the message of the worst failure.
 std::string describe_check(const CheckResult& check);
 
 std::string to_text(const PingTask& task, const PingResult& result);

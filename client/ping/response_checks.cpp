@@ -24,7 +24,7 @@ std::string difference_text(std::int64_t seq, double difference, double limit, s
                          format_text("({})", to_vec3(received)));
 }
 
-// in_bounds: the difference over its limit. make_failure is called if it is the worst so far.
+// in_bounds: the ratio of the difference to its limit. make_failure is called if it is the largest so far.
 template <typename MakeFailure>
 bool record(CheckResult& result, double in_bounds, const MakeFailure& make_failure) {
   ++result.compared;

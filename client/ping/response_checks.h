@@ -33,7 +33,7 @@ std::string_view to_string(Check check);  // "center of buoyancy"
 struct CheckResult {
   std::int64_t compared = 0;
   std::int64_t failed = 0;
-  double worst = 0.0;   // the largest difference over its limit; above 1: failed
+  double worst = 0.0;   // the largest ratio of a difference to its limit; above 1: failed
   std::string failure;  // the message of the worst failure; empty: none
 };
 
@@ -68,7 +68,7 @@ class ResponseChecks {
   // scene must outlive the checks.
   explicit ResponseChecks(const Scene& scene);
 
-  // For a scene that receives its sea. Errors: those of SeaTimeline::receive().
+  // Sets the sea of a scene that receives it. Errors: those of SeaTimeline::receive().
   Expected<void> receive_sea(Bytes sea) { return water_.receive_sea(sea); }
 
   // states: the bodies of the request, in the order of the scene. received: holds wrenches; other outputs
@@ -79,8 +79,8 @@ class ResponseChecks {
   const std::vector<BodyChecks>& bodies() const { return bodies_; }  // in the order of the scene
   std::int64_t replies() const { return replies_; }
   std::int64_t identical() const { return identical_; }  // replies with the same bits as expected
-  // Replies with other ids or bodies than the request, whose values are then not compared, and the first one
-  // in words.
+  // Number of replies whose ids or bodies are not those of the request, so that their values are not
+  // compared, and a description of the first one.
   std::int64_t wrong_ids() const { return wrong_ids_; }
   const std::string& first_wrong_ids() const { return first_wrong_ids_; }
   const std::vector<DifferingWrench>& differing() const { return differing_; }

@@ -15,7 +15,7 @@ namespace {
 
 void add_if_other(const char* name, double expected, double received, const char* unit,
                   std::vector<std::string>& causes) {
-  const double size = std::max(std::abs(expected), std::abs(received));  // infinite: of a depth
+  const double size = std::max(std::abs(expected), std::abs(received));  // infinite: the depth of deep water
   if (expected == received || (std::isfinite(size) && std::abs(expected - received) <= 1e-12 * size)) return;
   causes.push_back(format_text("the service's sea has another {}: {:6} instead of {:6}{}", name, received,
                                expected, unit));

@@ -9,15 +9,15 @@
 
 namespace buoyancy::ping {
 
-// How the service's own description of itself differs from the scene here: number of bodies, version, sea,
-// several services on one channel.
+// Returns how the service's description of itself differs from the scene here: bodies, fingerprint, version,
+// conditions, sea, several services on one channel.
 std::vector<std::string> causes_from_service(const Scene& scene, const ServiceInfo& service);
 
-// What the service says about itself that a user has to know though all values agree: another scene, other
-// services, states that contradict themselves.
+// Warns of what a user has to know about the service even if all values agree: another scene, other services,
+// states that contradict themselves.
 std::vector<Warning> service_warnings(const Scene& scene, const ServiceInfo& service);
 
-// Why there was no response at all.
+// Returns why there was no response at all.
 std::string cause_of_silence(const LinkOptions& options, const std::string& url, const ServiceInfo& service);
 
 }  // namespace buoyancy::ping

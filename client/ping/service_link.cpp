@@ -14,9 +14,9 @@
 namespace buoyancy::ping {
 namespace {
 
-// Others may publish faster than we can read, so that there is a message whenever we look.
+// Bounds the number of messages read after a deadline: others may publish faster than this program reads.
 constexpr int kMaxAfterDeadline = 1000;
-// The service publishes both in the same second, one after the other.
+// Waiting time after a status for a sea that may not exist: the service sends its sea right after the status.
 constexpr std::chrono::milliseconds kBetweenStatusAndSea{50};
 
 timespec to_timespec(Clock::duration duration) {
@@ -24,7 +24,7 @@ timespec to_timespec(Clock::duration duration) {
   return {static_cast<time_t>(nanoseconds / 1'000'000'000), static_cast<long>(nanoseconds % 1'000'000'000)};
 }
 
-// Not 0, which stands for no response.
+// Returns a hash other than 0, which stands for no response.
 std::size_t hash_of(Bytes bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return std::max<std::size_t>(std::hash<std::string_view>{}(text), 1);

@@ -44,7 +44,7 @@ struct AwaitedOutputs {
   bool loads = false;
 };
 
-// Messages on the channels of responses that are none.
+// Messages on the channels of responses that could not be decoded.
 struct UndecodableMessages {
   std::int64_t count = 0;
   std::string first_channel;
@@ -52,7 +52,7 @@ struct UndecodableMessages {
   std::size_t first_size = 0;  // [bytes]
 };
 
-// What is known about whoever responds.
+// What is known about the service that responds.
 struct ServiceInfo {
   std::optional<ServiceStatus> status;     // the newest
   std::vector<std::int64_t> instance_ids;  // distinct, of all statuses; more than one: several services

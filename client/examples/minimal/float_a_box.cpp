@@ -16,8 +16,8 @@ int main(int argc, char** argv) {
   const Eigen::Vector3d gravity(0.0, 0.0, -9.80665);   // m/s^2
   const double step = 1e-3;                            // s
 
-  // All in the world frame, z up. The mesh's origin is the centre of mass; docs/sidecar.md has the other
-  // case.
+  // Everything is in the world frame, z up. The mesh's origin is the centre of mass here; docs/sidecar.md has
+  // the general case.
   Eigen::Vector3d position(0.0, 0.0, 0.75);
   Eigen::Quaterniond orientation = Eigen::Quaterniond(0.98, 0.15, 0.1, 0.0).normalized();  // w, x, y, z
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
