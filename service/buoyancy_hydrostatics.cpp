@@ -24,7 +24,7 @@ namespace {
 struct Output {
   std::string text;  // on standard output
   std::string csv;
-  std::string html;                   // empty unless it is asked for
+  std::string html;                   // empty unless it is requested
   std::optional<Error> missing = {};  // what the output lacks
 };
 
@@ -35,7 +35,7 @@ Error no_balance(const std::string& heels) {
           "End the heels before it, see the command equilibrium, or fix the trim with --fixed-trim"};
 }
 
-// nullopt: the curve has all heels that were asked for.
+// Returns an error that lists the requested heels that the curve lacks; nullopt: it has all of them.
 std::optional<Error> missing_heels(const RightingCurve& curve) {
   std::string heels;
   for (const std::optional<double>& heel : {curve.unbalanced_starboard, curve.unbalanced_port}) {
@@ -51,7 +51,7 @@ PageSubject page_subject(const LoadedBody& loaded, const HydrostaticsPlan& plan)
   return {.name = loaded.name, .body = &loaded.body, .water = &loaded.water(), .axes = plan.table.axes};
 }
 
-// three: of the page, empty if none is asked for.
+// three: the text of three.js for the page, empty if no page is requested.
 Output equilibrium_output(const LoadedBody& loaded, const HydrostaticsOptions& options,
                           const HydrostaticsPlan& plan, const std::string& three) {
   EquilibriumOptions search;

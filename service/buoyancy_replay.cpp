@@ -106,13 +106,13 @@ int run_replay(const CLI::App& app, const ReplayOptions& options, const ReplayTa
   }
   if (!stopped) warn_of_missing_velocities(app, options, task);
   for (const std::string& doubt : summary->doubts) print_error(app, "warning: " + doubt);
-  // A channel may have no events in one part only.
+  // A channel without events in one part may have some in another: the join warns if there are none in any.
   if (!stopped && part == nullptr) warn_of_unseen(app, options, task.channels.unseen_channels());
   const std::string text =
       options.json ? summary_json(*summary, task.comparison) : summary_text(*summary, task.comparison);
   if (stopped && !stdout_is_writable()) return kFailure;
   if (!print_output(app, text)) return kFailure;
-  // A complete part need not be run again, whatever its input is like: that is for the join to report.
+  // A part need not be run again for errors of its input, which the join reports: it succeeds once complete.
   if (part != nullptr) return stopped ? kFailure : kSuccess;
   const bool agrees = task.comparison == nullptr || task.comparison->agrees();
   return summary->complete() && agrees ? kSuccess : kFailure;

@@ -43,7 +43,7 @@ int serve(const CLI::App& app, const DaemonOptions& options, Scene scene, PoseCh
   return exit_code;
 }
 
-// A scene that cannot be used: each mesh that is refused gets its report.
+// Reports why the scene cannot be used, with a report of each mesh that is refused.
 int report_failure(const CLI::App& app, const DaemonOptions& options, const Error& error,
                    const std::vector<RefusedMesh>& refused) {
   if (refused.empty()) {

@@ -9,8 +9,8 @@
 
 namespace buoyancy::service {
 
-// After so long, a request waits while signals, the watchdog, the status and other requests have their turn.
-// A body is not divided.
+// After this time a request waits while signals, the watchdog, the status and other requests have their turn.
+// The evaluation of one body is not interrupted.
 inline constexpr std::chrono::milliseconds kSlice{10};
 
 inline constexpr std::size_t kMaxExtraBodies = 10'000;

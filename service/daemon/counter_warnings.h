@@ -15,19 +15,19 @@
 
 namespace buoyancy::service {
 
-// One event per cause of rejection, per body status other than OK, and per other warning whose
+// Returns one event per cause of rejection, per body status other than OK, and per other warning whose
 // counter has grown. newest: see RequestHandler::newest_failures(); each is named with its status.
 std::vector<LogEvent> warnings_since(const ServiceCounters& before, const ServiceCounters& now,
                                      const BodyFailures& newest);
 
-// One event per kind of loss whose counter has grown.
+// Returns one event per kind of loss whose counter has grown.
 std::vector<LogEvent> warnings_since(const DropCounts& before, const DropCounts& now,
                                      const BufferLimit& receive_buffer_limit);
 
-// One of three messages, with the finding as its detail.
+// Returns one of three messages, with the finding as its detail.
 LogEvent to_log_event(const MotionFinding& finding);
 
-// The event of `count` poses without velocities on a channel; nullopt: its body needs none in this scene.
+// Returns the event of `count` poses without velocities on a channel; nullopt: the body needs none.
 std::optional<LogEvent> missing_velocities(const PoseChannel& pose, const Scene& scene, std::int64_t count);
 
 // One line of totals: "1200 requests: 1198 computed, 2 retries, ...".

@@ -69,7 +69,7 @@ bool consume_expiration(const UniqueFd& timer) {
   return ::read(timer.value(), &expirations, sizeof expirations) > 0;
 }
 
-// poll(2) with a limit in seconds, of which infinity is none.
+// Calls poll(2) with a time limit in seconds, of which at most kMaxWait is used; kForever: no limit.
 int poll_for(std::span<pollfd> descriptors, double seconds) {
   constexpr int kNoLimit = -1;
   if (seconds == 0.0) return ::poll(descriptors.data(), descriptors.size(), 0);
@@ -319,7 +319,7 @@ void Daemon::on_pose(std::size_t channel, Bytes pose) {
 }
 
 void Daemon::on_sea(Bytes message) {
-  if (!scene_->receives_sea()) return;  // it may be our own
+  if (!scene_->receives_sea()) return;  // the message may be this service's own
   if (const Expected<void> received = handler_.receive_sea(message); !received) {
     warnings_.add({"messages of the sea rejected", 1, received.error().message()}, seconds_now());
     return;
@@ -507,7 +507,7 @@ void Daemon::prepare_for_scene() {
   publish_sea();
 }
 
-// Their clients learn at once which scene they talk to.
+// A status tells the client of a new session at once which scene the service has loaded.
 void Daemon::publish_status_to_new_sessions() {
   constexpr double kMinInterval = 0.1;  // [s]: sessions may be begun as fast as requests
   if (seconds_now() - last_status_ >= kMinInterval) publish_status();

@@ -89,12 +89,12 @@ class Daemon {
   Expected<void> subscribe_to_conditions();  // once, and if the scene has compartments or tanks
   void prepare_for_messages();  // of the scene: enlarges the receive buffer, and logs what cannot arrive
   void prepare_for_scene();     // that has been loaded again: its messages, its conditions, its sea
-  // Handles messages, all that have arrived within a slice of time if others have work to go on with.
+  // Handles messages: one, or as many as fit a slice of time in mode latest or if requests are in progress.
   void handle_messages(bool have_arrived);
   // Is there a request that takes several slices and can go on?
   bool has_work() const;
-  // Would the session's next request take a slice in which quick ones wait? One that is not known yet would,
-  // if it can have its turn soon.
+  // May the session's next request take a slice of time, for which quick requests would have to wait? That is
+  // assumed of a session whose requests have not been timed yet, if there is room for it.
   bool may_take_long(std::int64_t session_id) const;
   void work();  // for a slice. Precondition: has_work()
   void record_queue_delay();
@@ -108,10 +108,10 @@ class Daemon {
   void handle(Bytes request, double arrival, bool may_wait);
   void wait(Bytes request, double arrival);
   void send_reply(double arrival);  // of the last request of handler_
-  // Calls task(). Where memory runs out, that is counted as a message that was rejected for it.
+  // Calls task(). If memory runs out, counts a message that was rejected for lack of memory.
   template <typename Task>
   void guard(const Task& task);
-  // Where the last response from handler_ goes, and the bytes that go there.
+  // The channel of the last response from handler_, and its bytes in the message type of that channel.
   struct AddressedResponse {
     const std::string& channel;
     Bytes bytes;

@@ -120,7 +120,7 @@ Expected<void> parse_item(std::string_view item, FaultOptions& options,
   return {};
 }
 
-// What a random number of a reply decides.
+// The random decisions about a reply, each of which has a random number of its own.
 enum class Draw : std::uint64_t { kDrop, kDuplicate, kReorder, kCorrupt, kCorruption, kJitter, kCut, kCount };
 
 // The finalizer of SplitMix64 (Steele, Lea and Flood 2014), a bijection that mixes all bits.

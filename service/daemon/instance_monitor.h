@@ -24,9 +24,9 @@ class InstanceMonitor {
     std::int64_t id = 0;
     std::int64_t scene_fingerprint = 0;  // when it was first observed
   };
-  // Those first observed since the last call.
+  // Returns those first observed since the last call.
   std::vector<Instance> take_new();
-  // All that were observed, at most kMaxInstances.
+  // The number of all that were observed, at most kMaxInstances.
   std::size_t count() const { return known_.size(); }
 
  private:

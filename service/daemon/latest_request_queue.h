@@ -6,7 +6,7 @@
 // the network and is stale. A newer request replaces the pending one and takes its place in the queue:
 // otherwise a client that sends faster than it is served would never get a response.
 //
-// Memory is bounded: the pending requests take at most max_bytes, of which what popped ones leave is a part.
+// Memory is bounded: pending requests and the buffers that popped ones leave take at most max_bytes together.
 // If all places are taken, the least recently used session without a pending request is evicted; only its
 // newest seq is lost, by which stale requests are recognised.
 #pragma once
@@ -60,7 +60,7 @@ class LatestRequestQueue {
   Session* find(std::int64_t id);
   Session* claim_session();  // an unused or evicted one; nullptr: every session has a pending request
 
-  // Frees what popped requests left until there is room. False: there is none.
+  // Frees the buffers that popped requests left until there is room. False: there is none.
   bool make_room(Session& session, std::size_t bytes);
 
   std::size_t max_sessions_;

@@ -21,7 +21,7 @@
 
 namespace buoyancy::service {
 
-// Why a scene that was loaded again is not in use.
+// The error of a load for which there was not enough memory.
 Error out_of_memory_for(const std::string& scene);
 
 class SceneLoader {

@@ -44,7 +44,7 @@ Expected<void> check_angles(const std::string& subject, const std::vector<double
   return {};
 }
 
-// Options that only one of the commands uses.
+// Refuses options that the command does not use, and a table without --draft.
 Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand command) {
   struct Use {
     const char* option;
@@ -160,7 +160,7 @@ std::string with_default(std::string type, double value) {
   return type.append(" [").append(format_shortest(value)).append("]");
 }
 
-// What a scene says otherwise.
+// Adds the options that say with --mesh what a scene file says otherwise.
 void add_mesh_options(CLI::App& app, CLI::Option* mesh, HydrostaticsOptions& options) {
   constexpr double kMax = 1e9;
   add_scale_option(app, options.scale, mesh);

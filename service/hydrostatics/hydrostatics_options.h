@@ -55,7 +55,7 @@ enum class HydrostaticsCommand { kEquilibrium, kTable, kRightingArms };
 struct HydrostaticsPlan {
   HydrostaticsCommand command = HydrostaticsCommand::kEquilibrium;
   Vec3 center_of_mass_B = Vec3::Zero();  // [m], with --mesh
-  MeshPlacement placement;               // likewise
+  MeshPlacement placement;               // with --mesh
   HydrostaticTableOptions table;
   RightingArmOptions arms;
   ImmersionPoints points;

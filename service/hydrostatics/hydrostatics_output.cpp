@@ -40,7 +40,7 @@ std::string outcome_sentence(FlotationOutcome outcome) {
 
 namespace {
 
-// Why an attitude is not stable; empty where it is.
+// Returns why an attitude is not stable; empty if it is.
 std::string reason(const Equilibrium& at) {
   std::string text;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -25,7 +25,7 @@ constexpr TableColumn kHeel{"heel", "Heel", "°"};
 constexpr TableColumn kTrim{"trim", "Trim", "°"};
 constexpr TableColumn kDraft{"draft", "Draft of the lowest point", "m"};
 
-// At most `max` of the numbers below count, ascending and evenly spaced, with the first and the last.
+// Returns at most `max` of the numbers below count, ascending and evenly spaced, with the first and the last.
 std::vector<std::size_t> evenly_chosen(std::size_t count, std::size_t max) {
   const std::size_t chosen = std::min(count, std::max<std::size_t>(max, 2));
   std::vector<std::size_t> numbers;
@@ -33,6 +33,15 @@ std::vector<std::size_t> evenly_chosen(std::size_t count, std::size_t max) {
     numbers.push_back(chosen == count ? i : i * (count - 1) / (chosen - 1));
   }
   return numbers;
+}
+
+// Returns the centre of mass [m] of the body with the liquids in its tanks. up_B: a unit vector.
+Vec3 total_center_of_mass_B(const FloatingBody& body, const Vec3& up_B) {
+  LiquidSum liquids;
+  for (const Tank& tank : body.tanks()) {
+    add_liquid(tank, tank_liquid(tank, up_B), body.center_of_mass_B(), liquids);
+  }
+  return body.center_of_mass_B() + liquids.moment / body.total_mass();
 }
 
 using State = std::array<double, kStateNumbers>;
@@ -154,7 +163,7 @@ std::string page_of(const Json& data, std::string_view three) {
   return page;
 }
 
-// The upright attitude and the heels to which the arm turns the body back.
+// Returns the stable attitudes among heel 0 and the heels at which the righting arm vanishes.
 Json rests_json(const PageSubject& subject, const RightingResults& results,
                 const RightingArmOptions& options) {
   constexpr double kStep = 1e-4;  // [rad]
@@ -175,7 +184,7 @@ Json rests_json(const PageSubject& subject, const RightingResults& results,
     if (const auto arm = arm_at(crossing.heel, nearest->arm.trim)) arms.push_back(*arm);
   }
   std::ranges::sort(arms, {}, &RightingArm::heel);
-  // Upside down, the heels of both sides are one attitude.
+  // Heels of 180 degrees to either side are the same attitude.
   constexpr double kTurn = 2.0 * std::numbers::pi;
   if (arms.size() > 1 && arms.back().heel - arms.front().heel > kTurn - 1e-9) arms.erase(arms.begin());
   Json rests = Json::array();

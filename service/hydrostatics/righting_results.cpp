@@ -17,7 +17,7 @@ constexpr double kThirty = 30.0 * kRadiansPerDegree;
 constexpr double kForty = 40.0 * kRadiansPerDegree;
 constexpr int kMaxHeel = 90;  // [degrees], of the criteria
 
-// Of the criteria: each degree up to 90, or up to the angle of downflooding and that angle.
+// Returns the heels of the criteria: each degree up to 90, or up to the angle of downflooding and that angle.
 std::vector<double> heels_of_criteria(double flooding) {
   std::vector<double> heels;
   for (int heel = 0; heel <= kMaxHeel && heel * kRadiansPerDegree <= flooding; ++heel) {
@@ -27,7 +27,7 @@ std::vector<double> heels_of_criteria(double flooding) {
   return heels;
 }
 
-// The options with progress that counts from `before` on, of `extra` heels more than those of the curve.
+// Returns the options with a progress that counts on from `before` to a total with `extra` more heels.
 RightingArmOptions with_progress(const RightingArmOptions& options, std::int64_t before, std::int64_t extra) {
   RightingArmOptions counted = options;
   if (!options.progress) return counted;
@@ -37,15 +37,15 @@ RightingArmOptions with_progress(const RightingArmOptions& options, std::int64_t
   return counted;
 }
 
-// [m rad], to a heel of the curve, or to its end.
+// Returns the area [m rad] under the curve up to one of its heels, or up to its end if that comes first.
 double area_to(const RightingCurve& curve, double heel) {
   const auto found = std::ranges::find_if(
       curve.points, [heel](const RightingCurvePoint& point) { return point.arm.heel >= heel; });
   return found == curve.points.end() ? curve.points.back().area : found->area;
 }
 
-// flooding: [rad], to starboard; infinity: none. The curve is cut short there: beyond it, the body is taken
-// to have lost its stability. Empty where the arms are not known up to there, or up to 90 degrees.
+// flooding: [rad], the angle of downflooding to starboard; infinity: none. The curve ends there, since the
+// criteria count no stability beyond. Returns none if an arm up to there, or up to 90 degrees, is unknown.
 std::vector<StabilityCriterion> general_criteria(const FloatingBody& body, const Water& water,
                                                  double flooding, const RightingArmOptions& options) {
   const auto curve = righting_curve(body, water, heels_of_criteria(flooding), options);

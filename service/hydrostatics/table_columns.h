@@ -18,7 +18,7 @@ struct TableColumn {
 // draft and trim come first.
 std::span<const TableColumn> table_columns();
 
-// In the order and the units of table_columns(): angles in degrees, masses in tonnes.
+// Returns a row's values in the order and units of table_columns(): angles in degrees, masses in tonnes.
 std::vector<double> values_of(const HydrostaticRow& row);
 
 }  // namespace buoyancy::service

@@ -18,7 +18,7 @@ struct WrapReport {
   double from_wrap = 0.0;  // and the other way
 };
 
-// A mesh, checked; without a report if the file could not be read.
+// The result of checking a mesh. It has no report if the file could not be read.
 struct CheckedMesh {
   std::string name;
   std::optional<MeshReport> report;
@@ -32,23 +32,23 @@ CheckedMesh check_mesh(const std::filesystem::path& path, const MeshPreparation&
 // Errors: those of import_mesh() and wrap_mesh().
 Expected<CheckedMesh> wrapped(const CheckedMesh& mesh, const MeshPlan& plan, double gap);
 
-// One mesh: its report; several: a line for each, and a summary.
+// Formats the report of one mesh; of several meshes, a line for each, and a summary.
 std::string report_text(const std::vector<CheckedMesh>& meshes);
 // {"meshes": [...], "usable": N}; a mesh has the fields of mesh_report_facts(), "usable", and "error", a text
 // or null.
 std::string report_json(const std::vector<CheckedMesh>& meshes);
 
-// The mesh as it is written: one that the importer, which reads single precision, gives back as it is, so
-// that no further repair is made of it. Coordinates are rounded only if that takes it. mesh: usable. Errors:
-// the rounding makes faults that cannot be repaired, or that change the volume by more than 1e-5.
+// Returns the mesh as it is written. The importer, which reads single precision, must find nothing to repair
+// in it, so that the mesh is rounded and repaired again if necessary. mesh: usable. Errors: the rounding
+// causes faults that cannot be repaired, or changes the volume by more than 1e-5 of it.
 Expected<CheckedMesh> as_written(CheckedMesh mesh, const std::string& output);
 
-// The report of the repaired mesh and where it was written.
+// Format the report of the repaired mesh and the name of the file that it was written to.
 std::string repair_text(const CheckedMesh& repaired, const std::string& output);
 std::string repair_json(const CheckedMesh& repaired, const std::string& output);
 
-// What lies between two meshes, as text or as JSON with the same numbers. Errors: those of the meshes; one
-// that is too large or too small for queries.
+// Describes how two meshes differ, as text or as JSON with the same numbers. Errors: a mesh cannot be read or
+// used, or is too large or too small for queries.
 Expected<std::string> compare_meshes(const MeshPlan& plan, const MeshOptions& options);
 
 }  // namespace buoyancy::service

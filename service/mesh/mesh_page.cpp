@@ -18,7 +18,7 @@
 namespace buoyancy::service {
 namespace {
 
-// A face by the places of its corners, whatever its winding.
+// The sorted positions of a face's corners, which identify the face whatever its winding.
 using Place = std::array<double, 3>;
 using FacePlaces = std::array<Place, 3>;
 
@@ -47,7 +47,7 @@ Json part_json(const TriangleMesh& mesh, const char* colour) {
           {"colour", colour}};
 }
 
-// The mesh with the faces that `others` lacks apart, and with its open edges.
+// Returns the faces that `others` has and those that it lacks as two parts, and the mesh's open edges.
 Json mesh_json(const TriangleMesh& mesh, const std::set<FacePlaces>* others) {
   TriangleMesh kept = mesh;
   TriangleMesh changed = mesh;

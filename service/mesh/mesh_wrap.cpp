@@ -52,7 +52,7 @@ Polyhedron to_polyhedron(const TriangleMesh& mesh) {
   return polyhedron;
 }
 
-// The surface at a distance. Which way its faces turn depends on the kind of grid.
+// Returns the isosurface of a distance field. The winding of its faces depends on the kind of grid.
 TriangleMesh surface_at(const openvdb::FloatGrid& distance, double isovalue, double adaptivity) {
   Polyhedron found;
   openvdb::tools::volumeToMesh(distance, found.points, found.triangles, found.quads, isovalue, adaptivity);
@@ -73,7 +73,7 @@ TriangleMesh surface_at(const openvdb::FloatGrid& distance, double isovalue, dou
   return mesh;
 }
 
-// Leaves out cavities, and what lies in them. Faces turn so that the largest component is a solid.
+// Removes cavities and what lies in them. Orients the faces such that the largest component is a solid.
 TriangleMesh outer_surfaces(TriangleMesh mesh) {
   const MeshTopology topology = mesh_topology(mesh);
   std::vector<ComponentReport> components = describe_components(mesh, topology);

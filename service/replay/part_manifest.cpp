@@ -122,7 +122,7 @@ Expected<ReplayFacts> replay_facts(const ReplayOptions& options, const Scene& sc
     facts.emplace_back("--tolerance", format_shortest(options.tolerance));
     facts.emplace_back("--open", options.open == OpenPolicy::kRefuse ? "refuse" : "dry_boundary");
   }
-  // Also covers files that the scene file and mesh files refer to.
+  // The fingerprint also covers files that the scene file and mesh files refer to.
   facts.emplace_back("scene, meshes and waves", std::to_string(scene_fingerprint(scene)));
   facts.emplace_back("formats",
                      options.input.extension().string() + " to " + options.output.extension().string());

@@ -30,8 +30,8 @@ class PartOutput {
 
   ReplayOutput& responses() { return responses_; }
 
-  // Gives the files their names. task: whose replay has come to its end. Errors: the input was not readable
-  // as a whole; it holds a request in a session of poses; the disk is full or failed.
+  // Gives the files their names. task: its replay has come to its end. Errors: the input was not readable as
+  // a whole; it holds a request in a session of poses; the disk is full or failed.
   Expected<void> complete(const ReplayTask& task, const ReplaySummary& summary,
                           std::vector<std::string> input_errors);
 

@@ -23,7 +23,7 @@ struct Round {
   std::size_t filled = 0;  // the first `filled` batches are in use
 };
 
-// What the messages that were read so far have brought.
+// The seas and conditions of the messages that were read so far.
 struct Received {
   SeaTimeline seas;
   ConditionTimeline conditions;

@@ -12,7 +12,7 @@ std::string event_error(std::int64_t timestamp, const Error& error) {
 }  // namespace
 
 ReplayBatch::ReplayBatch(const Scene& scene, const OutputLayout& layout, bool keep_responses)
-    : handler_(scene, {.threads = 1, .checks_motion = false}),  // the reader does, in order
+    : handler_(scene, {.threads = 1, .checks_motion = false}),  // the reader checks it, in order
       loads_csv_(layout.loads_csv),
       keep_responses_(keep_responses),
       conditions_(scene),

@@ -154,7 +154,7 @@ void ReplayComparison::add_hydrostatics(Bytes hydrostatics) {
 }
 
 void ReplayComparison::add_loads(Bytes loads) {
-  assert(!limits_.empty());  // of the message's response
+  assert(!limits_.empty());  // the message's response was added before
   const std::vector<BodyLimits> limits = std::move(limits_.front());
   limits_.pop_front();
   auto next = limits.begin();

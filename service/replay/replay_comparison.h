@@ -131,7 +131,7 @@ class ReplayComparison {
   Channel<WrenchResponse> responses_;
   Channel<BodiesHydrostatics> hydrostatics_;
   Channel<BodiesLoads> loads_;
-  // Of each response whose loads are still to come: its bodies with this output, in their order.
+  // For each response whose loads are still to come, its bodies with this output, in their order.
   std::deque<std::vector<BodyLimits>> limits_;
   std::map<std::int32_t, BodyDifferences> bodies_;
 };

@@ -64,7 +64,7 @@ Expected<void> check_formats(const ReplayOptions& options, const ReplayPlan& pla
   return {};
 }
 
-// The file of the loads must be a file of its own.
+// Checks that the loads go to a CSV file of their own, in a replay of the whole.
 Expected<void> check_loads_file(const ReplayOptions& options) {
   if (options.loads.empty()) return {};
   const Expected<FileFormat> format = output_format(options.loads, FileFormat::kCsv);

@@ -8,10 +8,9 @@
 // what came before a batch:
 // - The header line of a CSV file. Only the first part writes it.
 // - The numbers of a log's events. A part counts them from 0.
-// - The seq of requests that the replay itself makes, from poses and from CSV rows; the response,
-// hydrostatics
-//   and loads carry it. A part counts these from 0 too, per session. No recorded request may use such a
-//   session: a part that finds one fails, so that the session tells which messages count.
+// - The seq of requests that the replay itself makes, from poses and from CSV rows, and of the messages that
+//   reply to them. A part counts these from 0 too, per session. No recorded request may use such a session: a
+//   part that finds one fails, so that the session tells which messages count.
 // - Warnings about channels without events, and which input errors are shown. A part puts both into its
 //   manifest instead.
 // - The condition of compartments and tanks. A part of a log reads the messages before it
