@@ -13,7 +13,7 @@ constexpr const char* expected_numbers() {
                                         : "integers, for example a numpy array of int64";
 }
 
-// What the user would call the type of the object's elements: numpy's dtype, else that of the object itself.
+// Names the type of the object's elements as the user would: by numpy's dtype, else by the object's type.
 std::string type_text(py::handle object) {
   if (py::hasattr(object, "dtype")) return "an array of " + std::string(py::str(object.attr("dtype")));
   return object.is_none() ? "None" : std::string("a ") + Py_TYPE(object.ptr())->tp_name;
@@ -54,7 +54,7 @@ void check_elements(PyObject* sequence, const char* name, int depth) {
     throw py::value_error(std::string(name) + " has sequences within sequences, more than " +
                           std::to_string(kMaxDimensions) + " deep");
   }
-  // A list may change while an element converts itself.
+  // The size is read each time, since a list may change while an element converts itself.
   for (Py_ssize_t i = 0; i < PySequence_Fast_GET_SIZE(sequence); ++i) {
     const auto element = py::reinterpret_borrow<py::object>(PySequence_Fast_GET_ITEM(sequence, i));
     if (is_sequence(element.ptr())) {
@@ -67,7 +67,7 @@ void check_elements(PyObject* sequence, const char* name, int depth) {
 
 template <typename Number>
 Numbers<Number> from_sequence(PyObject* sequence, const char* name) {
-  // A row of Python's numbers, such as the position of one pose, takes numpy longer than a query of it.
+  // A row of Python numbers is read here: numpy takes longer for one position than a query of its pose.
   const Py_ssize_t size = PySequence_Fast_GET_SIZE(sequence);
   Numbers<Number> row(size);
   Py_ssize_t i = 0;
@@ -82,7 +82,7 @@ Numbers<Number> from_sequence(PyObject* sequence, const char* name) {
   }
 }
 
-// Whether numbers of this type convert to Number without a loss of their kind.
+// Returns whether numbers of this type are a kind that Number takes, such as integers for double.
 template <typename Number>
 bool converts(const py::dtype& type) {
   constexpr bool kTakesFloats = std::is_same_v<Number, double>;
@@ -98,7 +98,7 @@ Numbers<Number> to_numbers(PyObject* object, const char* name) {
   if (is_sequence(object)) return from_sequence<Number>(object, name);
   Number number{};
   if (read_number(object, number)) return Numbers<Number>(py::array::ShapeContainer{}, &number);
-  // Numpy takes the bytes of a bytearray for integers.
+  // Numpy would take the bytes of a bytearray for integers.
   if (PyByteArray_Check(object)) refuse(object, name, expected_numbers<Number>());
   const py::array array = py::reinterpret_borrow<py::object>(object);
   if (!converts<Number>(array.dtype())) refuse(object, name, expected_numbers<Number>());

@@ -24,10 +24,10 @@ inline constexpr int kInPlace = int{py::array::c_style} | int{py::detail::npy_ap
 template <typename Number>
 using Numbers = py::array_t<Number, kInPlace | int{py::array::forcecast}>;
 
-// The caller's own array if it is of this kind: no copy. Arrays of other numbers and strides, objects with
-// the buffer protocol or __array__(), and lists and tuples of numbers are converted into a copy.
+// Returns the caller's own array, without a copy, if its numbers are of this type and can be read in place.
+// Other arrays, objects with the buffer protocol or __array__(), lists and tuples are converted into a copy.
 //
-// Number: double, which takes integers and floats of every size, or std::int64_t, which takes integers only.
+// Number: double, which takes integers and floats of up to 64 bits, or std::int64_t, which takes integers.
 // bool, complex, text, bytes, objects and numbers of the other byte order are refused. name: of the argument.
 // Throws a TypeError, ValueError or OverflowError, the first two of which name it.
 template <typename Number>
@@ -41,21 +41,21 @@ std::span<const Number> values_of(const Numbers<Number>& array) {
   return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
-// Three numbers. Throws a ValueError for another shape; expected: for its text.
+// Returns three numbers. Throws a ValueError for another shape, whose text contains `expected`.
 Vec3 to_vector(PyObject* object, const char* name, const char* expected);
 
 // "(3, 4)", as Python prints it.
 std::string shape_text(const py::array& array);
 
-// One number, such as a level. Throws a TypeError for anything else, such as a bool or text.
+// Returns one number, such as a level. Throws a TypeError for anything else, such as a bool or text.
 template <typename Number>
 Number to_number(PyObject* object, const char* name);
 
 extern template double to_number(PyObject* object, const char* name);
 extern template std::int64_t to_number(PyObject* object, const char* name);
 
-// A view of one member of all records, which owner keeps: (K, ...), or (...) of the only record. A scalar of
-// the only record is a Python number. member: points to it, or is a function that returns a reference to it.
+// Returns a view of one member of all records, which owner keeps alive: (K, ...), or (...) if single, where a
+// scalar is a Python number. member: a pointer to the member, or a function that returns a reference to it.
 template <typename Record, typename MemberOf>
 py::object record_field(std::span<Record> records, bool single, py::handle owner, MemberOf member) {
   static Record none{};
@@ -64,7 +64,7 @@ py::object record_field(std::span<Record> records, bool single, py::handle owner
   if constexpr (std::is_arithmetic_v<Member>) {
     if (single) return py::cast(first);
   }
-  // Of a std::array, numpy appends the shape to that of the records. Never destroyed.
+  // Numpy appends the shape of a std::array to that of the records. The type is never destroyed.
   static const py::handle type = py::dtype::of<Member>().release();
   std::vector<py::ssize_t> shape, strides;
   if (!single) {

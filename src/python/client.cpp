@@ -30,8 +30,8 @@
 namespace buoyancy::python {
 namespace {
 
-// Has Python look for signals while a request waits, so that Ctrl-C ends it. Called without the interpreter's
-// lock; taking it costs more than a round trip, so that it is rarely done.
+// Has Python check for signals while a request waits, so that Ctrl-C ends it. It is called without the
+// interpreter's lock and takes it rarely, since that costs more than a round trip.
 class SignalCheck {
  public:
   void start() {
@@ -63,7 +63,7 @@ struct ClientObject {
   SignalCheck signals;
   bool has_loads = false;
   bool is_busy = false;
-  bool has_warned = false;        // of another scene
+  bool has_warned = false;        // that the service has another scene
   std::vector<BodyState> states;  // reused
 };
 
@@ -71,7 +71,7 @@ struct ClientObject {
   throw ServiceException({"Client", actual, expected, "", hint});
 }
 
-// For the time of a call that uses the client without the interpreter's lock.
+// Marks the client as busy during a call that uses it without the interpreter's lock.
 class BusyClient {
  public:
   explicit BusyClient(ClientObject& object) : object_(object) {
@@ -163,7 +163,7 @@ BodyIds to_body_ids(const ClientObject& object, PyObject* given) {
     bodies.ids.push_back(to_body_id(object, given));
     return bodies;
   }
-  // Lists, tuples and arrays alike. An iterable without end is refused before it is read.
+  // Lists, tuples and arrays are read alike. An iterable without end is refused before it is read.
   if (PySequence_Check(given) == 0) {
     throw py::type_error(std::string("body_ids is a ") + Py_TYPE(given)->tp_name +
                          "; expected an id, or a list of ids");
@@ -204,7 +204,7 @@ void store(const WrenchResponse& response, const BodiesLoads& loads, bool with_l
   wrenches.body_ids.resize(response.bodies.size());
   wrenches.has_loads = with_loads;
   if (with_loads) wrenches.loads.assign(response.bodies.size(), BodyLoads{});
-  // The loads are those of the bodies with this output, in the order of the response.
+  // The message holds loads only of the bodies with this output, in the order of the response.
   auto next = loads.bodies.begin();
   for (std::size_t i = 0; i < response.bodies.size(); ++i) {
     const BodyWrench& wrench = response.bodies[i];

@@ -23,7 +23,7 @@ PyObject* define(py::module_& module, const char* name, const char* doc, const p
   return type;
 }
 
-// The text may name a file whose name is not UTF-8.
+// Returns the text as a str. It may name a file whose name is not UTF-8.
 py::object decoded(const char* text) {
   return py::reinterpret_steal<py::object>(
       PyUnicode_DecodeUTF8(text, static_cast<Py_ssize_t>(std::strlen(text)), "backslashreplace"));
@@ -87,8 +87,8 @@ void take_gil_again(PyThreadState* state) noexcept {
   try {
     PyEval_RestoreThread(state);
   } catch (...) {
-    // Not an exception, but the C library's unwinding for pthread_exit(). It has no object: to catch it by
-    // its type, abi::__forced_unwind, would bind a reference to nothing.
+    // This is no exception, but the C library's unwinding for pthread_exit(). It has no object: to catch it
+    // by its type, abi::__forced_unwind, would bind a reference to nothing.
     while (true) pause();
   }
 }

@@ -28,7 +28,7 @@
 namespace buoyancy::python {
 namespace {
 
-// A row per body of every message.
+// The tables of a log have a row per body of every message.
 struct Origin : RequestId {
   std::int64_t timestamp = 0;  // [us]
 };
@@ -67,7 +67,7 @@ void add_request(std::int64_t timestamp, Bytes bytes, Log& log) {
   }
 }
 
-// Reads all items of a log or a CSV file, and what could not be read.
+// Passes all events of a log or a CSV file to on_event, and records what could not be read.
 template <typename Reader, typename OnEvent>
 void read_items(Reader& reader, Log& log, OnEvent on_event) {
   while (true) {
@@ -101,7 +101,7 @@ void read_event_log(const std::string& path, const std::string& states_channel,
   if (const std::optional<Error>& error = reader.file().read_error()) throw InputException(*error);
 }
 
-// False for another number of fields than the header has, or a field that is no number.
+// Returns false for another number of fields than the header has, or a field that is no number.
 bool parse_wrench_row(std::string_view line, std::int64_t& utime, BodyWrench& wrench) {
   CsvFields fields(line);
   bool good = true;

@@ -51,8 +51,8 @@ Method to_method(PyObject* object) {
   throw py::value_error("method = \"" + name + "\"; expected one of " + names);
 }
 
-// The mesh that make(&report) returns. It is prepared without the interpreter's lock; one that is refused has
-// a report.
+// Calls make(&report) without the interpreter's lock and returns its mesh. Throws an InputException, with the
+// report of a mesh that is refused.
 template <typename Make>
 std::unique_ptr<MeshObject> prepare(const Make& make) {
   const WithoutGil released;
@@ -62,7 +62,7 @@ std::unique_ptr<MeshObject> prepare(const Make& make) {
   return std::make_unique<MeshObject>(MeshObject{*std::move(mesh)});
 }
 
-// The index of a word among those that an argument may have.
+// Returns the index of a word among those that an argument may have.
 template <std::size_t kCount>
 std::size_t to_choice(const std::string& word, const std::array<std::string_view, kCount>& words,
                       const char* argument) {
@@ -116,8 +116,8 @@ MeshPlacement to_placement(const py::object& scale, const py::object& up) {
   return placement;
 }
 
-// The numbers of an array of rows of three. A copy, since other threads may change the caller's array, but
-// faces are checked and then used.
+// Returns the numbers of an array of rows of three as a copy: another thread might change the caller's array
+// between the check of the faces and their use.
 template <typename Number>
 std::vector<Number> rows_of(const py::object& object, const char* name, const char* expected) {
   const Numbers<Number> array = to_numbers<Number>(object.ptr(), name);

@@ -72,7 +72,7 @@ PoseInput::PoseInput(const PoseObjects& objects)
                         "angular_velocity", 3) {
   bool many_times = false;
   utimes_ = to_utimes(objects.time, many_times);
-  // The argument that said how many poses there are.
+  // The argument that has determined the number of poses.
   const char* counted = nullptr;
   const auto count = [&](const char* name, std::size_t poses) {
     if (counted != nullptr && poses != size_) {

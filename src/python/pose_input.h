@@ -14,14 +14,14 @@ namespace buoyancy::python {
 // Times in seconds as the utimes of messages [us], rounded to the nearest. Throws a ValueError for times that
 // no utime can hold, such as NaN.
 std::vector<std::int64_t> to_utimes(std::span<const double> seconds);
-// None for None, one for a number, K for (K,); many: is it (K,)?
+// Returns no times for None, one for a number, K for (K,). many: set to whether it is (K,).
 std::vector<std::int64_t> to_utimes(PyObject* time, bool& many);
 
 struct PoseObjects {
   PyObject* position = nullptr;          // (3,) or (K, 3)
   PyObject* quaternion = nullptr;        // (4,) or (K, 4)
   PyObject* linear_velocity = nullptr;   // (3,) or (K, 3); nullptr or None: at rest
-  PyObject* angular_velocity = nullptr;  // likewise
+  PyObject* angular_velocity = nullptr;  // (3,) or (K, 3); nullptr or None: at rest
   PyObject* time = nullptr;              // a number or (K,) [s]; nullptr: 0
 };
 
@@ -46,7 +46,7 @@ class PoseInput {
     std::size_t poses = 1;
     std::vector<double> repeated;
     py::object array;
-    // Numpy does not resize an array that one refers to, whereas it ignores the buffers that it has exported.
+    // Keeps numpy from resizing the array: it ignores exported buffers, but not weak references.
     py::object weak_reference;
 
     // No values where object is nullptr.

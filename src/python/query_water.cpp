@@ -23,7 +23,7 @@ Vec3 to_up(PyObject* object) {
     throw InputException({"the water", "up = " + format_vector(up_W),
                           "a direction: three finite numbers, not all zero", "", ""});
   }
-  return (up_W / largest).normalized();  // as a scene file's
+  return (up_W / largest).normalized();  // as for a scene file
 }
 
 }  // namespace

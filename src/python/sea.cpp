@@ -59,7 +59,7 @@ Points to_points(std::initializer_list<std::pair<const char*, py::handle>> coord
     return own_shape.equal(shape) ? array : Numbers<double>(numpy.attr("broadcast_to")(array, shape));
   };
   Points points;
-  // The last coordinate is the time. A single one remains one, which is quicker by far.
+  // The last array holds the times. A single time is not repeated for all points, which is much faster.
   const Numbers<double> times = arrays.back();
   arrays.pop_back();
   points.utimes = to_utimes(values_of(times.size() == 1 ? times : spread(times)));
@@ -72,7 +72,7 @@ Points to_points(std::initializer_list<std::pair<const char*, py::handle>> coord
   return points;
 }
 
-// The array of what evaluate(begin, end, out) sets for the points in [begin, end): width numbers per point.
+// Returns the array that evaluate(begin, end, out) fills for points [begin, end), `width` numbers per point.
 template <typename Evaluate>
 py::object at_points(const Points& points, std::size_t width, const Evaluate& evaluate) {
   std::vector<py::ssize_t> shape = points.shape;

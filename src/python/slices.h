@@ -1,4 +1,4 @@
-// Long calculations without the global interpreter lock, which Ctrl-C ends.
+// Runs long calculations without the global interpreter lock, such that Ctrl-C ends them.
 #pragma once
 
 #include <algorithm>

@@ -221,7 +221,7 @@ py::object evaluate(const Body& body, const QueryWater& water, const PoseInput& 
   py::object result = wrenches_for(out, poses.size(), poses.single());
   auto& wrenches = instance_of<Wrenches>(result);
   wrenches.has_loads = with_loads;
-  // Of poses that cannot be evaluated the loads are zeros.
+  // The loads of poses that cannot be evaluated remain zeros.
   if (with_loads || !wrenches.loads.empty())
     wrenches.loads.assign(with_loads ? poses.size() : 0, BodyLoads{});
   const PoseArrays of_poses = poses.arrays();

@@ -13,8 +13,8 @@
 
 namespace buoyancy::python {
 
-// All arrays lie in one allocation. The views that Python gets are made when they are asked for, since one
-// takes longer than some queries.
+// All arrays lie in one allocation. The views that Python gets are made on demand, since making one takes
+// longer than some queries.
 class Wrenches {
  public:
   // single: Python sees (3,) rather than (1, 3). Values are not initialised.
@@ -25,10 +25,10 @@ class Wrenches {
   const WrenchArrays& arrays() const { return arrays_; }
   void set(std::size_t i, const BodyWrench& wrench);
 
-  // Of a body with loads, one per pose, else empty. has_loads is part of it where there are no poses.
+  // The loads of a body that has them, one per pose; else empty. has_loads tells which if there are no poses.
   std::vector<BodyLoads> loads;
   bool has_loads = false;
-  // Of a response from the service, one per body.
+  // Set for a response from the service only, with one id per body.
   std::vector<std::int32_t> body_ids;
   std::optional<std::int64_t> utime;
 

@@ -29,7 +29,7 @@ def __getattr__(name):
     """
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    # Before any call: two threads would wait for each other if their calls imported numpy.
+    # Import numpy before any call: two threads would wait for each other if their calls imported it.
     import numpy  # noqa: F401
 
     from . import _core

@@ -366,7 +366,7 @@ class Importer:
         density, (low, high) = total.mass / volume, _PLAUSIBLE_DENSITY
         if low <= density <= high:
             return
-        # Of the units that make it plausible, the one that comes nearest to that of water.
+        # Choose, of the units that make the density plausible, the one that brings it nearest to that of water.
         plausible = [unit for unit in _UNITS if low <= density / unit**3 <= high]
         unit = min(plausible, key=lambda u: abs(math.log(density / u**3 / 1000)), default=None)
         hint = (

@@ -247,7 +247,7 @@ class Service:
         """
         end = time.monotonic() + timeout
         while True:
-            ended = not self.is_running  # asked before the log is read, which is complete then
+            ended = not self.is_running  # checked before the log is read, which is complete then
             if text in self.log:
                 return True
             if ended or time.monotonic() >= end:

@@ -220,7 +220,7 @@ class PartMaker:
 
 
 def _inscribed_share(kind):
-    """The volume of a scene's sphere, cylinder or cone over that of the round one."""
+    """The ratio of the volume of a scene's faceted sphere, cylinder or cone to that of the round one."""
     if kind != "sphere":
         return SIDES / (2 * math.pi) * math.sin(2 * math.pi / SIDES)
     # Frusta between n + 2 circles of latitude, each an n-gon.
@@ -337,7 +337,7 @@ def overlap(a, b):
 
 
 def _shape_pose(part):
-    """The pose of the centred shape; that of a cone in a scene is about its base."""
+    """The pose of the shape's centre; a cone in a scene has its origin in its base."""
     if part.geometry.kind != "cone":
         return part.pose
     return frames.compose(part.pose, ((0.0, 0.0, part.geometry.size[1] / 2), frames.IDENTITY[1]))

@@ -21,7 +21,7 @@ _AIR = 100.0  # kg/m^3: a layer that is lighter is the air above the water
 
 @dataclass
 class Coefficients:
-    """Of one link, in its axes and about its origin."""
+    """The coefficients of one link, in its axes and about its origin."""
 
     link: str
     source: str
@@ -488,7 +488,7 @@ def _sphere(model, density, matrices):
 
 
 def _cylinder(model, density, matrices):
-    """As uuv_simulator computes it: its added mass along the axis is that of a length of 1 m."""
+    """Sets the matrices as uuv_simulator does, whose added mass along the axis is that of a length of 1 m."""
     radius, length, axis = model.number("radius"), model.number("length"), model.child_text("axis", "")
     if radius is None or length is None or axis not in ("i", "j", "k"):
         return False
@@ -546,7 +546,7 @@ _PLUGINS = (
 
 
 def with_body_frame(coefficients, pose):
-    """The three matrices in the axes of the body, and the link's origin in it; `pose` is the link's in the body."""
+    """The matrices turned to the body's axes, the link's origin in the body, and the rotation; `pose` is the link's."""
     rotation = frames.product(pose[1], coefficients.rotation)
     return (
         [
@@ -593,7 +593,7 @@ def admissible(matrix, what, source, report, symmetric=False):
 
 
 def _is_semidefinite(matrix):
-    """Of the symmetric part, scaled to a diagonal of ones: by Cholesky's decomposition, within 1e-7."""
+    """Whether Cholesky's decomposition of the symmetric part, scaled to a diagonal of ones, succeeds within 1e-7."""
     scale = [math.sqrt(matrix[i][i]) for i in range(6)]
     if any(i != j and (matrix[i][j] + matrix[j][i]) and not scale[i] * scale[j] for i in range(6) for j in range(6)):
         return False

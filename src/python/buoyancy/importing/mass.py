@@ -15,7 +15,7 @@ class Mass:
 
 
 def of_inertial(inertial, pose):
-    """`pose` is that of the link in the frame of the body."""
+    """The mass of a link's inertial in the frame of the body; `pose` is that of the link in that frame."""
     rotation = frames.product(pose[1], inertial.rotation)
     return Mass(inertial.mass, frames.transform(pose, inertial.center), frames.turned(inertial.inertia, rotation))
 

@@ -4,7 +4,7 @@ from typing import Optional
 
 from .frames import IDENTITY
 
-# How gz-sim and MuJoCo fill a body whose mass they compute from its geometry [kg/m^3].
+# The density [kg/m^3] with which gz-sim and MuJoCo compute the mass of a body from its geometry.
 DEFAULT_DENSITY = 1000.0
 
 

@@ -40,13 +40,13 @@ def text(value):
 
 
 def number(value):
-    """Twelve digits: angles in radians such as 1.5708 otherwise leave rounding in every entry."""
+    """A number of twelve digits: angles such as 1.5708 rad would otherwise leave their rounding in every entry."""
     short = float(f"{value:.12g}")
     return repr(int(short)) if short == int(short) and abs(short) < 1e15 else repr(short)
 
 
 def vector(values):
-    """Numbers with what is rounding alone left out."""
+    """Numbers in which those that are nothing but rounding are 0."""
     largest = max((abs(v) for v in values), default=0.0)
     return [0.0 if abs(v) <= 1e-12 * max(largest, 1e-3) else float(v) for v in values]
 
