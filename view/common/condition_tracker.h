@@ -20,7 +20,7 @@ class ConditionTracker {
 
   // Receives a body_condition_t. Errors: those of ConditionTimeline::receive(), some of which take effect.
   Expected<void> receive(Bytes message);
-  // Was any message received that took effect, or may have?
+  // Was any message received, whether or not it took effect?
   bool has_received() const { return has_received_; }
 
   // The condition of a body of the scene, by its index, at the time of a request; the same object as before

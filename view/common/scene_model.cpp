@@ -57,7 +57,7 @@ std::string file_name(const Json& path) {
   return std::filesystem::path(path.get<std::string>()).filename().string();
 }
 
-// Without such bodies nothing is added, so that the page of a run stays as small as it is.
+// Adds the data of loads. Nothing is added if no body has loads, which keeps the page of such a run small.
 void add_loads(const Scene& scene, Json& model) {
   if (std::ranges::none_of(scene.bodies(), has_loads)) return;
   const HorizontalAxes axes = horizontal_axes(scene.water().up_W);

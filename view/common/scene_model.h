@@ -9,11 +9,11 @@
 
 namespace buoyancy::view {
 
-// Whether a page shows the parts of the wrench on a body: one with drag, added mass or the output "loads".
+// Does a page show the parts of the wrench on the body? True with drag, added mass or the output "loads".
 bool has_loads(const Body& body);
 
 struct SceneModelOptions {
-  // Of all meshes together; meshes that exceed their equal share are reduced to it.
+  // The limit for all meshes together. Meshes that exceed their equal share are reduced to it.
   std::size_t max_triangles = kMaxDrawnTriangles;
 };
 
@@ -32,8 +32,8 @@ struct SceneModelOptions {
 //                            "added_mass": whether it has any
 //                            "published": whether its outputs include "loads"}
 // The meshes of the parts of a body are left out, as are its "parts" and the "sections" of meshes: a page
-// draws the mesh that they are together. "mesh" of bodies, compartments and tanks is an index into what
-// remains.
+// draws the mesh that joins them. "mesh" of bodies, compartments and tanks is an index into the remaining
+// meshes.
 //
 // positions and indices are base64 of little-endian numbers. A mesh with more triangles than its share of
 // max_triangles is reduced for drawing only (meshoptimizer).

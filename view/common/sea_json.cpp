@@ -27,7 +27,7 @@ Json sea_json(const SeaPeriod& period) {
 }
 
 double sea_time(const Sea& sea, std::int64_t utime, double lead_time) {
-  // In seconds and microseconds, since the difference of two int64 may not be one.
+  // Subtracts seconds and microseconds apart, since the difference of two int64 may exceed an int64.
   constexpr std::int64_t kSecond = 1'000'000;
   const std::int64_t origin = sea.time_origin();
   const std::int64_t seconds = utime / kSecond - origin / kSecond;

@@ -207,7 +207,7 @@ void BusMonitor::tick(double now) {
   if (seconds_.size() > kSecondsKept) seconds_.pop_front();
   latency_of_second_ = LatencyHistogram();
   counts_at_second_start_ = counted;
-  // After a pause of the process, the seconds that were missed are not made up for.
+  // Seconds that were missed while the process was paused are skipped.
   second_start_ = now < second_start_ + 2.0 ? second_start_ + 1.0 : now;
 }
 

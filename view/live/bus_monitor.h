@@ -154,7 +154,7 @@ class BusMonitor {
 
   const Scene* scene_;
   SeaTimeline seas_;
-  mutable ConditionTracker conditions_;  // it caches what is asked for
+  mutable ConditionTracker conditions_;  // caches the conditions that are requested
   PoseTracker poses_;
   std::vector<BodyMonitor> bodies_;
   RequestTracker tracker_;

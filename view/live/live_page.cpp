@@ -16,7 +16,7 @@ std::string model_json(const Scene& scene, const std::string& version) {
       Json{{"version", version}, {"body_statuses", body_statuses()}, {"model", scene_model(scene)}});
 }
 
-// One file: a browser opens a connection for each, and gives up those that a busy machine serves late.
+// Joins all scripts: a browser opens a connection per file, and gives up one that a busy machine serves late.
 std::string page_script(bool subdivision) {
   std::string script;
   std::vector<const char*> names{"format.js",       "sea.js",         "water_materials.js",

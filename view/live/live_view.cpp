@@ -17,7 +17,7 @@
 namespace buoyancy::view {
 namespace {
 
-// How often the kernel's receive buffer is drained. Its default limit is 400 kB: 20 messages about 100
+// The kernel's receive buffer is drained this often. Its default limit is 400 kB: 20 messages about 100
 // bodies, which arrive within 10 ms of a run at 1 kHz.
 constexpr double kReceivePeriod = 0.002;    // [s]
 constexpr int kMaxPacketsPerDrain = 2'000;  // limits the delay of snapshots under a flood
@@ -35,8 +35,8 @@ timespec to_timespec(double seconds) {
   return {whole, static_cast<long>(1e9 * (seconds - static_cast<double>(whole)))};
 }
 
-// Request, response, hydrostatics and loads of all bodies [bytes]. They may all arrive before the first is
-// read.
+// Returns the total size [bytes] of the request, response, hydrostatics and loads of all bodies. They may all
+// arrive before the first is read.
 std::size_t largest_step(const Scene& scene) {
   const std::size_t bodies = scene.bodies().size();
   const std::size_t with_hydrostatics = scene.bodies_with_hydrostatics();
@@ -124,7 +124,7 @@ void LiveView::run(const TerminationSignals& termination, const std::function<bo
       monitor_.tick(now_);
       if (broadcaster_->listeners() > 0) publish();
       if (metrics_ != nullptr) update_metrics();
-      // After a delay, missed snapshots are not made up for.
+      // Snapshots that were missed during a delay are skipped.
       next = std::max(next + kPeriod, now_);
     }
     pollfd terminated{termination.fileno(), POLLIN, 0};

@@ -46,11 +46,11 @@ class LiveView {
   static Expected<LiveView> open(const Scene& scene, const std::string& lcm_url,
                                  const ObservedChannels& channels, SnapshotBroadcaster& broadcaster);
 
-  // That messages about all bodies of the scene may be lost to this view because the kernel grants it too
+  // Warns that this view may lose messages about all bodies of the scene, since the kernel grants it too
   // small a receive buffer; nullopt: they fit.
   const std::optional<Warning>& buffer_warning() const { return buffer_warning_; }
 
-  // Sets this text with every status, and when none arrives any more; before run(). It must outlive the view.
+  // Has run() update the metrics with every status, and when no more arrive. They must outlive the view.
   void keep_metrics(Metrics& metrics) { metrics_ = &metrics; }
 
   // Runs until a termination signal arrives or keep_running returns false; to be called once.

@@ -12,7 +12,7 @@
 namespace buoyancy::view {
 namespace {
 
-// Whole numbers that are no totals.
+// The integer fields that are gauges in the sense of Prometheus; all others are counters.
 constexpr std::array<std::string_view, 6> kGauges{"mode",         "simd_target", "threads",
                                                   "scene_bodies", "sessions",    "retained_bytes"};
 

@@ -11,8 +11,8 @@
 namespace buoyancy::view {
 
 // Each field of service_status_t under its name with "buoyancy_" in front: counters with "_total" behind,
-// times with "_seconds". buoyancy_up is 1, and buoyancy_info has version, scene, instance_id and
-// scene_fingerprint as labels. status: nullptr: none has arrived recently; then buoyancy_up is 0 and alone.
+// times with "_seconds". buoyancy_up is 1, and buoyancy_info has the labels version, scene, injected_faults,
+// instance_id and scene_fingerprint. status: nullptr: none has arrived recently; buoyancy_up is 0 and alone.
 std::string metrics_text(const ServiceStatus* status);
 
 // The text that is served: one thread sets it, others read it.

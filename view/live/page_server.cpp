@@ -61,7 +61,7 @@ Clock::time_point deadline_after(Seconds timeout) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
 }
 
-// What a connection does; streams are kept, others may have to make room.
+// What a connection does. A connection with a stream is kept; others may have to make room.
 enum class Phase { kHeader, kResponse, kStream };
 
 // A connection of listen_on().
@@ -157,7 +157,7 @@ class Connections {
   }
 
   void close(std::list<Connection>::iterator connection) {
-    // Under the lock, so that evict_one() cannot shut down a reused file descriptor.
+    // The lock is held, so that evict_one() cannot shut down a reused file descriptor.
     const std::lock_guard lock(mutex_);
     connection->socket.close();
     ended_.splice(ended_.end(), open_, connection);
@@ -210,7 +210,7 @@ std::string_view without_port(std::string_view host) {
   return has_port ? host.substr(0, colon) : host;
 }
 
-// The address that a Host without its port is; empty if it is none. IPv6 addresses have brackets.
+// Returns the address in a Host header without its port; empty: a name. IPv6 addresses have brackets there.
 std::string address_of(std::string_view host) {
   const bool bracketed = host.starts_with('[') && host.ends_with(']');
   std::string address(bracketed ? host.substr(1, host.size() - 2) : host);
@@ -223,14 +223,14 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
-// Of this machine, as people type it; none if it is unknown.
+// Returns the names of this machine as people type them; none if its name is unknown.
 std::vector<std::string> machine_names() {
   std::array<char, HOST_NAME_MAX + 1> name{};
   if (::gethostname(name.data(), name.size() - 1) != 0 || name[0] == '\0') return {};
   return {name.data(), std::string(name.data()) + ".local"};
 }
 
-// Invalid: failed, errno has the reason. address: in numeric form. port: if 0, becomes that of the socket.
+// Returns an invalid descriptor with errno set if it fails. address: numeric. port: if 0, set to a free one.
 UniqueFd listen_on(const std::string& address, int& port, const PageLimits& limits) {
   addrinfo hints{};
   hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
@@ -390,8 +390,8 @@ class PageServer::Http {
     const std::string value(request[http::field::host]);
     const std::string_view host = without_port(value);
     if (std::ranges::find(host_names_, in_lower_case(std::string(host))) != host_names_.end()) return true;
-    // An address is no name that someone else could have pointed here; this machine may have any, also that
-    // of a router.
+    // DNS rebinding needs a name, since nobody else can point an address here. Any address is accepted:
+    // clients may use any that this machine has, or that of a router in front of it.
     const std::string address = address_of(host);
     return !address.empty() && (!is_loopback(address_) || is_loopback(address));
   }
@@ -465,7 +465,7 @@ class PageServer::Http {
   }
 
   const UniqueFd listening_;
-  // Made in advance: there may be no memory for it when it is needed.
+  // This text is made in advance: there may be no memory for it when it is needed.
   const std::string failure_ =
       text_response("500 Internal Server Error", "The request could not be processed.");
   const std::string address_;

@@ -90,7 +90,7 @@ void append(std::string& text, const BusMonitor& monitor, std::size_t index, dou
   } else {
     out.plain("null");
   }
-  // As double: 5,000 km from W's origin, adjacent floats are 0.5 m apart.
+  // Positions are written as doubles: 5,000 km from W's origin, adjacent floats are 0.5 m apart.
   out.plain(R"(,"p":)").numbers_as<double>(body.pose->position);
   out.plain(R"(,"q":)").numbers(body.pose->quaternion_wxyz);
   if (wrench != nullptr) {

@@ -41,9 +41,8 @@ namespace buoyancy::view {
 //   status_age, response_age, request_age   [s], or null
 //   second         the last complete second, same as in history_json, or null
 //   latency        p50, p99, p999, max [s] since the start
-//   sea_time       [s], in waves only: the time t of the sea at the latest request; null without a request,
-//   or
-//                  if no sea has been received that holds at its time
+//   sea_time       [s], in waves only: the time t of the sea at the latest request; null if there is no
+//                  request, or no sea has been received that holds at its time
 //   counts         BusMonitor::Counts and RequestTracker::Counts; "conditions_rejected" only if the scene has
 //                  compartments or tanks
 std::string snapshot_json(const BusMonitor& monitor, std::int64_t number, double time, double listening,

@@ -51,7 +51,7 @@ class ArmPlot extends Plot {
   const shown = { row: 0, rest: null };
   const scene = data.rows > 0 ? make_water_scene(element('canvas'), data.model) : null;
   if (scene) {
-    // From astern for heel, from starboard for trim.
+    // Heel is seen from astern, trim from starboard.
     if (data.command === 'gz') [scene.azimuth, scene.elevation] = [Math.PI + 0.25, 0.12];
     if (data.command === 'table') [scene.azimuth, scene.elevation] = [-0.5 * Math.PI, 0.08];
     Object.assign(scene, { zoomed: true, distance: 1.5 * scene.size });
@@ -67,7 +67,7 @@ class ArmPlot extends Plot {
   const across = { gz: { column: 'heel', name: 'heel', unit: '°' }, table: { column: 'draft', name: 'draft', unit: ' m' } }[data.command];
   const group_of = (row) => groups.findLast((first) => first <= row);
 
-  // Rounding of what is 0 is not drawn.
+  // Rounding errors of zeros are not drawn.
   const smallest = { m: 1e-12 * data.model.meshes[0].diagonal, '°': 1e-9 };
   const without_rounding = (values, unit) => values.map((value) => (Math.abs(value) < (smallest[unit] || 0) ? 0 : value));
 
@@ -111,7 +111,7 @@ class ArmPlot extends Plot {
     }
   }
 
-  // The pose as a scene has it.
+  // Shows an attitude, and its pose in the keys of a scene file.
   function show_facts(row) {
     const at = data.results.attitudes[row];
     const facts = table_of('The attitude shown', ['', ''], [
@@ -165,7 +165,7 @@ class ArmPlot extends Plot {
     press(rest);
   }
 
-  // A picture of each attitude at rest, as a button that shows it.
+  // Makes a picture of each attitude at rest, as a button that shows it.
   function make_pictures() {
     const size = [340, 208];
     for (const rest of rests) {
@@ -250,7 +250,7 @@ class ArmPlot extends Plot {
     if (across) make_plots();
     make_pictures();
     add_listeners();
-    // The upright ship, at the middle draft, or the first attitude.
+    // Shows the upright ship, at the middle draft, or the first attitude.
     const upright = (angles) => angles.reduce((best, angle, i) => (Math.abs(angle) < Math.abs(angles[best]) ? i : best), 0);
     show_row({ equilibrium: 0, gz: upright(columns.heel || []), table: upright(columns.trim) + Math.floor(data.group_rows / 2) }[data.command]);
   } else {

@@ -11,12 +11,12 @@ function attitude_rows(results) {
 
 const attitude_heads = ['', '', 'heel, °', 'trim, °', 'draft, m', 'smaller GM, m', 'larger GM, m', 'energy, J', 'force / bound', 'torque / bound', 'remarks'];
 
-// The heels at which something happens, with a side each.
+// The characteristic heels of the curve, such as that of the largest arm, for either side.
 function heel_rows(results) {
   const rows = [];
   const add = (text, starboard, port) => rows.push([text, degrees_text(starboard), degrees_text(port)]);
   const heel_of = (arm) => (arm === null ? null : arm.heel);
-  // Where the arm vanishes, or where water comes in before.
+  // The range ends where the arm vanishes, or where water comes in before.
   const end_of_range = (side) => {
     const ends = [results[`vanishing_${side}`], results.downflooding && heel_of(results.downflooding[side])].filter((end) => end !== null);
     return ends.length === 0 ? null : ends.reduce((a, b) => (Math.abs(a) < Math.abs(b) ? a : b));
@@ -37,7 +37,7 @@ function criteria_rows(criteria) {
   return criteria.values.map(({ name, value, required, unit, met }) => [name, value, required, unit, met ? 'met' : 'NOT met']);
 }
 
-// The rows of the page; of many, an evenly chosen part, since a browser takes seconds for a hundred thousand cells.
+// The rows of the page, or an evenly chosen part of many, since a browser takes seconds for a hundred thousand cells.
 function value_table(data, columns) {
   const max_rows = 500;
   const count = Math.min(data.rows, max_rows);

@@ -95,7 +95,7 @@ class StackPlot extends Plot {
   }
 }
 
-// From 0 to 100 %, also where the values are constant.
+// Plots from 0 to 100 %, even if the values are constant.
 class ImmersionPlot extends Plot {
   range() {
     return { ...super.range(), low: 0, high: 100 };
@@ -105,7 +105,7 @@ class ImmersionPlot extends Plot {
 const dot_product = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross_product = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-// v turned by the quaternion q [w, x, y, z].
+// Returns v rotated by the quaternion q [w, x, y, z].
 function turned(q, v) {
   const norm = Math.hypot(...q);
   const [w, ...u] = q.map((component) => component / norm);
@@ -122,7 +122,7 @@ function axis_text(axis) {
 // Whether forces depend on the motion of this body, so that its energy is not conserved.
 const has_hydrodynamics = (description) => Boolean(description.loads && (description.loads.drag_center || description.loads.added_mass));
 
-// Two plots, of the stacked loads along an axis that the reader selects, and of the immersion.
+// Plots the stacked loads along an axis that the reader selects, and the immersion.
 //
 // Loads are {immersion, buoyancy, drag, added_mass: [6], a force and a torque about the reference point, q}, or null where
 // they are not known; see snapshot_json.h.

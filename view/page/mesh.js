@@ -61,7 +61,7 @@ class MeshPicture {
     const scale = 0.85 * Math.min(width, height) / this.view.size * this.view.zoom;
     const list = [];
     for (const part of this.parts) this.triangles(part, scale, width, height, list);
-    // The inside is seen through holes, behind all that faces the camera: large faces cross in depth.
+    // Faces seen from the inside, through holes, come first: sorted by depth alone, large faces may be out of order.
     list.sort((one, other) => other.inside - one.inside || one.depth - other.depth);
     for (const { at, colour } of list) {
       context.fillStyle = context.strokeStyle = colour;

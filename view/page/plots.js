@@ -11,12 +11,12 @@ function round_ticks(low, high, max_ticks) {
   return { ticks, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
 }
 
-// At most four significant digits, but all of a whole number below a million.
+// Formats a number with at most four significant digits, but a whole number below a million with all of its digits.
 function format_number(value) {
   return Number.isInteger(value) && Math.abs(value) < 1e6 ? (value || 0).toLocaleString('en') : format_digits(value, 1);
 }
 
-// Four significant digits, so that a number that changes keeps its width.
+// Formats a number with four significant digits, so that one that changes keeps its width.
 const format_fixed = (value) => format_digits(value, 4);
 
 function format_digits(value, least) {
@@ -145,8 +145,8 @@ class Plot {
     this.show(this.shown_time);
   }
 
-  // The text stands along its line, at the bottom, or at the top where that is taken; the third of three lines close by
-  // has it in its tooltip only, as all have.
+  // The text runs along its line from the bottom, or from the top if another text is there already. If both places are
+  // taken, only the line's tooltip, which every line has, shows it.
   draw_marks(range, top, bottom) {
     const width = 12, ends = [{ y: bottom, anchor: 'start', dx: 4, last: -Infinity }, { y: top, anchor: 'end', dx: -4, last: -Infinity }];
     for (const { time, text } of this.marks) {
@@ -161,7 +161,7 @@ class Plot {
     }
   }
 
-  // y: from values to the picture, as this.x from times.
+  // y: maps values to pixels, as this.x maps times.
   draw_series(y) {
     this.series.forEach(({ times, values }, i) => {
       let path = '', dots = '', pen_up = true;

@@ -49,8 +49,8 @@
              m: body.metacentres ? [Array.from(body.metacentres.subarray(6 * row, 6 * row + 3)), Array.from(body.metacentres.subarray(6 * row + 3, 6 * row + 6))] : null };
   }
 
-  // The sea when the selected body is shown at a time of the run, and its time [s]: those of the body's row before, and
-  // the time since then. In water at rest, and where the sea is not known, null and NaN.
+  // Returns the sea at a time of the run and its own time [s], from the last row of the selected body before then and
+  // the time since that row. In water at rest, and where the sea is not known, they are null and NaN.
   function sea_at(when) {
     if (seas.length === 0) return { sea: null, sea_time: NaN };
     const { time: times, sea_time: sea_times, sea: places } = selected.columns;
@@ -80,7 +80,7 @@
       name, times: selected.columns.time,
       values: selected.columns[column].map((value, row) => (group.is_valid(selected, row) ? (group.scale || 1) * value : NaN)) }));
   }
-  // A plot's title for the selected body; `moving`: where drag or added mass contribute.
+  // A plot's title for the selected body: that in `moving` if drag or added mass contribute.
   const title_of = (group) => (group.moving && selected.loads && has_hydrodynamics(selected.description) ? group.moving : group.title);
   const scale_of = (group) => (group.scale_of_body ? group.scale_of_body(selected) : 0);
   const plots = {};

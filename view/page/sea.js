@@ -16,20 +16,20 @@ class Sea {
     return t > 0 ? 0.5 * (1 - Math.cos(Math.PI * t / this.ramp)) : 0;
   }
 
-  // [m], of the surface over the level, at the distances x1 and x2 [m] along e1 and e2 from W's origin.
+  // Returns the elevation [m] of the surface above the level at the distances x1, x2 [m] along e1, e2 from W's origin.
   elevation(x1, x2, t) {
     let sum = 0;
     for (let i = 0; i < this.components; i += 1) sum += this.amplitude[i] * Math.cos(this.phase_at(i, x1, x2, t));
     return this.amplitude_factor(t) * sum;
   }
 
-  // [rad], of one component, within half a turn of 0: sines of such angles are exact and cheap.
+  // Returns the phase [rad] of one component within half a turn of 0, where sines are accurate and cheap.
   phase_at(i, x1, x2, t) {
     const phase = this.k1[i] * x1 + this.k2[i] * x2 - this.apparent_frequency[i] * t + this.phase[i];
     return phase - 2 * Math.PI * Math.round(phase / (2 * Math.PI));
   }
 
-  // [rad/m]: waves of larger wave numbers hold at most 2 % of the energy. 0 in a calm sea.
+  // Returns the wave number [rad/m] above which waves hold at most 2 % of the energy; 0 in a calm sea.
   largest_relevant_wave_number() {
     const order = Array.from(this.wave_number.keys()).sort((a, b) => this.wave_number[b] - this.wave_number[a]);
     const energy = (i) => this.amplitude[i] * this.amplitude[i];

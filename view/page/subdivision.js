@@ -7,7 +7,7 @@
 
 const subdivision_colours = { compartment: '#8a949c', flooded: '#cc2936', tank: '#454f58', liquid: '#7a1fa2', liquid_surface: '#ce93d8' };
 
-// What holds for a body, NaN where it is unknown. description: of the body, see scene_model.h.
+// Returns the condition that holds for a body, with NaN if it is unknown. description: of the body, see scene_model.h.
 function values_of({ compartments, tanks }, condition) {
   if (condition) return condition;
   const known = condition === undefined;
@@ -88,7 +88,7 @@ class LevelCut {
     const links = new Map();  // the outline of the surface, anticlockwise: edge to {point, next edge}
     const key = (i, j) => (i < j ? i * heights.length + j : j * heights.length + i);
     const point = (i) => [points[3 * i], points[3 * i + 1], points[3 * i + 2]];
-    // From the lower to the upper vertex, so that both triangles of an edge have the same point.
+    // Interpolates from the lower to the upper vertex, so that both triangles of an edge have the same point.
     const crossing = (i, j) => {
       const [low, high] = heights[i] < heights[j] ? [i, j] : [j, i];
       const fraction = (level - heights[low]) / (heights[high] - heights[low]);
@@ -118,7 +118,7 @@ class LevelCut {
     return { walls, surface: this.fill(this.outlines(links)) };
   }
 
-  // Closed sequences of points.
+  // Returns the links as closed sequences of points.
   outlines(links) {
     const found = [];
     while (links.size > 0) {
@@ -157,7 +157,7 @@ class LevelCut {
   }
 }
 
-// Whether a point is inside a polygon.
+// Returns whether a point is inside a polygon.
 function is_inside(point, polygon) {
   let inside = false;
   polygon.forEach((to, i) => {
@@ -167,7 +167,7 @@ function is_inside(point, polygon) {
   return inside;
 }
 
-// Flat shading, as of hulls.
+// Returns a material with flat shading, as that of hulls has it.
 function inner_material(colour, opacity) {
   return new THREE.ShaderMaterial({
     extensions: { derivatives: true },
@@ -193,7 +193,7 @@ function inner_material(colour, opacity) {
   });
 }
 
-// What is inside one body. Everything is in the order in which it is drawn: liquids first, the hull over all.
+// Draws what is inside one body. renderOrder puts the liquids first, and the translucent hull over everything.
 class SubdivisionDrawing {
   // group: of the body, in its frame. hull: its mesh, of hull_material(). model: see scene_model.h.
   constructor(group, hull, description, model, geometries) {
@@ -232,7 +232,7 @@ class SubdivisionDrawing {
     });
   }
 
-  // up_W: a vector. The body has its pose.
+  // up_W: a vector. Precondition: the body's group has its pose.
   show(up_W, condition) {
     const { flooded, liquid_volumes } = values_of(this.description, condition);
     this.compartments.forEach(({ material }, i) => {
@@ -282,7 +282,7 @@ class SubdivisionDrawing {
   }
 }
 
-// Of what closed triangles enclose, three numbers per corner; the origin where they enclose nothing.
+// Returns the centroid of what closed triangles enclose, three numbers per corner; the origin if they enclose nothing.
 function centroid(triangles) {
   let volume = 0;
   const moment = [0, 0, 0];

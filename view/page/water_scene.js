@@ -269,7 +269,7 @@ class WaterScene {
     this.place_arrow(body.markers.weight, body.markers.centre_of_mass.position, this.up.clone().negate(), scale * weight, body.size);
   }
 
-  // loads: or null or undefined. scale: [m/N], of forces.
+  // loads: may be null or undefined. scale: [m/N], of forces.
   place_loads({ description, group, markers, size }, loads, scale) {
     const center = description.loads.drag_center;
     markers.drag.visible = markers.water_velocity.visible = false;
@@ -351,7 +351,7 @@ function is_valid_pose(p, q) {
   return p.every(Number.isFinite) && q.every(Number.isFinite) && q.some((component) => component !== 0);
 }
 
-// Antialiasing costs software rendering a third of its frame rate.
+// Returns whether WebGL renders in software, where antialiasing costs a third of the frame rate.
 function uses_software_rendering() {
   const probe = document.createElement('canvas').getContext('webgl');
   const information = probe && probe.getExtension('WEBGL_debug_renderer_info');

@@ -8,7 +8,7 @@ class WaveSurface {
   static get min_lines() { return 45; }
   // Software rendering takes about a microsecond per point.
   static max_lines(software_rendering) { return software_rendering ? 101 : 145; }
-  // Points times components: a few milliseconds.
+  // The maximum number of points times components; evaluating them takes a few milliseconds.
   static get max_work() { return 4e6; }
 
   constructor(water_scene, sea) {

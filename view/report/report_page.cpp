@@ -82,7 +82,7 @@ std::string encode_rows(const std::vector<RunRow>& rows, std::size_t columns) {
   return base64_of<double>(numbers);
 }
 
-// nullptr: that of the scene file, or unknown.
+// Returns the condition of a row; nullptr: it is that of the scene file, or unknown.
 const BodyCondition* condition_of(const BodyRun& run, std::size_t row) {
   if (run.conditions.empty()) return nullptr;
   const std::optional<BodyCondition>& condition = run.conditions[run.condition_of_row[row]];

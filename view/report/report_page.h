@@ -22,7 +22,7 @@ struct ReportOptions {
 // list}.
 std::string report_data(const Scene& scene, const RecordedRun& run, const ReportOptions& options);
 
-// What a page contains besides that which every page contains.
+// The parts of a page that only some runs need.
 struct PageParts {
   bool loads = false;        // a body has loads, which the page plots
   bool subdivision = false;  // a body has compartments or tanks, which the page draws

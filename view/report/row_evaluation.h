@@ -22,11 +22,11 @@ struct RowEvaluation {
 RowEvaluation evaluate_row(const Body& body, const WaterState& water, const Vec3& current_W,
                            const BodyState& state, double lead_time, const BodyCondition* condition);
 
-// Fills in the loads of a body's rows, which have loads: the recorded ones, and others computed in the water
-// of their time. O(rows * cost of a query).
+// Fills in the loads of the rows of a body that has loads: the recorded ones, and others, computed in the
+// water at their time. O(rows * cost of a query).
 void add_loads(const Scene& scene, const Body& body, const std::vector<KeptRow>& rows, BodyRun& run);
 
-// Fills in the conditions of a body's rows, which has compartments or tanks. O(rows log(rows)).
+// Fills in the conditions of the rows of a body that has compartments or tanks. O(rows log(rows)).
 void add_conditions(const Subdivision& subdivision, const std::vector<KeptRow>& rows, BodyRun& run);
 
 }  // namespace buoyancy::view

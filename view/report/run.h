@@ -72,7 +72,7 @@ inline constexpr std::array<std::string_view, kColumnCount> kColumnNames{
     "round_trip", "heave", "roll", "pitch", "force", "torque", "sea_time", "sea"};
 
 using RunRow = std::array<double, kColumnCount>;
-// Whether the water of a scene moves, or can.
+// Does a scene have waves, or receive them?
 inline bool has_waves(const Scene& scene) {
   return scene.sea() != nullptr || scene.receives_sea();
 }
@@ -81,8 +81,8 @@ inline bool has_waves(const Scene& scene) {
 // a torque [N m] about the reference point, both in W:
 //   kImmersion      0 to 1
 //   kBuoyancyLoad   six columns, a wrench: the buoyancy, or in waves the load of the waves
-//   kDragLoad       likewise
-//   kAddedMassLoad  likewise
+//   kDragLoad       six columns, the wrench of drag
+//   kAddedMassLoad  six columns, the wrench of added mass
 //   kWaterVelocity  three columns [m/s], W
 enum LoadColumn : std::size_t {
   kImmersion,

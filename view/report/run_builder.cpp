@@ -166,7 +166,7 @@ void RunBuilder::count_evaluation(ShownBody& shown, const Body& body, const Vali
     return;
   }
   shown.last_pose = bits;
-  if (body.subdivision != nullptr) {  // bounds do not decide
+  if (body.subdivision != nullptr) {  // bounds do not suffice to evaluate it
     ++shown.evaluations.crossing;
     return;
   }
@@ -298,7 +298,7 @@ RecordedRun RunBuilder::finish() {
     BodyRun& body = run_.bodies[i];
     std::vector<KeptRow> rows = bodies_[i]->rows.rows();
     body.evaluations = bodies_[i]->evaluations;
-    // Requests without a response were added late.
+    // Requests without a response were added out of order.
     std::ranges::stable_sort(rows, {}, [](const KeptRow& row) { return row.values[kTime]; });
     for (const KeptRow& row : rows) body.rows.push_back(row.values);
     if (has_loads(scene_.bodies()[i])) add_loads(scene_, scene_.bodies()[i], rows, body);

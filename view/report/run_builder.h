@@ -53,12 +53,12 @@ class RunBuilder {
   // session or within one, its times continue after the body's previous ones; so do those of a clock that
   // differs by more than a day.
   std::int64_t time_of(std::int32_t body_id, std::int64_t session_id, std::int64_t utime);
-  // In any order. Returns nullptr for a body that is not shown or has no loads. Otherwise the row's loads:
-  // set `recorded` in them, before finish(), to what the file holds; others are computed.
+  // Adds a row, in any order. Returns nullptr for a body that is not shown or has no loads; otherwise the
+  // row's loads: set `recorded` in them, before finish(), to what the file holds; others are computed.
   std::shared_ptr<RowLoads> add(const RecordedState& recorded);
-  // A sea_state_t of a scene that receives its sea: wrenches that are computed afterwards are those in it.
+  // Receives a sea_state_t, for a scene that receives its sea: wrenches of rows added later are those in it.
   void receive_sea(std::int64_t timestamp, Bytes message);
-  // A body_condition_t of a scene with compartments or tanks, from whose utime on it holds.
+  // Receives a body_condition_t, for a scene with compartments or tanks. It holds from its utime on.
   void receive_condition(std::int64_t timestamp, Bytes message);
   void add_warning(std::string warning);
   void add_notice(std::string notice) { run_.notices.push_back(std::move(notice)); }

@@ -22,7 +22,7 @@ constexpr FieldRange kWrenchFields{"status", "center_of_buoyancy"};
 
 enum class LineEnd { kNewline, kTooLong, kNone };
 
-// Reads a line, of one that is too long the first kMaxLine bytes. kNone: there are no more lines.
+// Reads a line, or the first kMaxLine bytes of one that is too long. kNone: there are no more lines.
 LineEnd read_line(std::istream& file, std::vector<char>& buffer, std::string_view& line) {
   buffer.resize(kMaxLine + 1);
   file.getline(buffer.data(), static_cast<std::streamsize>(buffer.size()));
@@ -92,7 +92,7 @@ bool read(const std::vector<std::string_view>& fields, const std::vector<std::si
   return true;
 }
 
-// Reads the fields of a range, which stay as they are where there are no columns.
+// Reads the fields of a range, which stay as they are if the file has no columns for them.
 template <typename Body>
 bool read(const std::vector<std::string_view>& fields, const std::vector<std::size_t>& positions,
           const FieldRange& range, Body& body) {
