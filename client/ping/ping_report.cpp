@@ -10,14 +10,6 @@ namespace {
 
 constexpr std::size_t kMaxBodiesShown = 20;
 
-template <typename... Arguments>
-void append_line(std::string& text, const char* format, Arguments... arguments) {
-  std::array<char, 512> line{};
-  std::snprintf(line.data(), line.size(), format, arguments...);
-  text += line.data();
-  text += '\n';
-}
-
 // Returns the largest ratio of a difference to its limit in all checks of a body.
 double worst_of(const BodyChecks& body) {
   double worst = 0.0;

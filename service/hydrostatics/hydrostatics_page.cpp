@@ -35,15 +35,6 @@ std::vector<std::size_t> evenly_chosen(std::size_t count, std::size_t max) {
   return numbers;
 }
 
-// Returns the centre of mass [m] of the body with the liquids in its tanks. up_B: a unit vector.
-Vec3 total_center_of_mass_B(const FloatingBody& body, const Vec3& up_B) {
-  LiquidSum liquids;
-  for (const Tank& tank : body.tanks()) {
-    add_liquid(tank, tank_liquid(tank, up_B), body.center_of_mass_B(), liquids);
-  }
-  return body.center_of_mass_B() + liquids.moment / body.total_mass();
-}
-
 using State = std::array<double, kStateNumbers>;
 
 State state_at(const PageSubject& subject, const Pose& pose) {

@@ -18,7 +18,6 @@ constexpr double kDisagreement = 0.5;      // of the larger of two displacements
 constexpr double kAgreement = 0.2;         // likewise
 constexpr double kShortInterval = 0.0999;  // [s]
 constexpr double kSinglePrecision = 1e-6;  // relative: smaller changes may be rounding to float32
-constexpr double kRadiansPerDegree = 0.017453292519943295;
 constexpr double kMicrosecondsPerSecond = 1e6;
 
 constexpr unsigned bit(MotionMistake mistake) {

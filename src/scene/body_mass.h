@@ -44,7 +44,7 @@ Weights weights_of(const RigidBodyMass& own, const LiquidSum& liquids, const Vec
 // mostly within 1e-3 (relative) else. Complexity: 48 queries of hydrostatics per tank that is neither empty
 // nor full.
 RigidBodyMass mass_with_liquids(const Body& body, const RigidBodyMass& own, const BodyCondition* condition,
-                           const Vec3& up_B);
+                                const Vec3& up_B);
 
 // Returns what the weights of a body and of the liquids in its tanks add to a hydrostatic stiffness about
 // center_B (hydrostatics.h). It is 0 about the centre of mass without tanks; free surfaces reduce it.
