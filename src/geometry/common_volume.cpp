@@ -243,13 +243,18 @@ std::optional<double> overlap_volume(const TriangleMesh& mesh) {
   const TriangleMesh none;
   const OffsetMesh only{&mesh, Vec3::Zero()};
   const BoundingBox box = box_of(only);
-  constexpr double kMaxLayers = 1'000.0;  // the surface's crossings per column, on average
+  const ColumnLayout layout = along_longest_side(box);
+  // The surface's crossings per column on average, which the memory for them is proportional to.
+  constexpr double kMaxCrossings = 32.0;
   const Vec3 sides = box.max_B - box.min_B;
-  const double section = sides.prod() / sides.maxCoeff();
-  double area = 0.0;
-  for (const Triangle& face : mesh.triangles) area += area_of_face(mesh, face);
-  if (!(area <= kMaxLayers * section)) return std::nullopt;
-  return volume_where(box, only, {&none, Vec3::Zero()}, along_longest_side(box),
+  double crossed_area = 0.0;
+  for (const Triangle& face : mesh.triangles) {
+    const Vec3 a = mesh.vertex(face[0]);
+    const Vec3 normal = 0.5 * (mesh.vertex(face[1]) - a).cross(mesh.vertex(face[2]) - a);
+    crossed_area += std::abs(normal[layout.along]);
+  }
+  if (!(crossed_area <= kMaxCrossings * sides.prod() / sides[layout.along])) return std::nullopt;
+  return volume_where(box, only, {&none, Vec3::Zero()}, layout,
                       [](int winding, int) { return std::max(winding - 1, 0); })
       .volume;
 }

@@ -29,8 +29,8 @@ double common_volume(const OffsetMesh& a, const OffsetMesh& b);
 double volume_outside(const OffsetMesh& inner, const OffsetMesh& outer);
 
 // Returns the volume [m^3] that the integrals over a closed mesh count more than once, because its parts
-// overlap or lie in each other; nullopt if the surface would cover its box more than a thousand times.
-// Complexity: as common_volume(), times the layers of the surface.
+// overlap or lie in each other; nullopt if a line along the longest side of its box crosses the surface more
+// than 32 times on average. Complexity: as common_volume(), times half these crossings.
 std::optional<double> overlap_volume(const TriangleMesh& mesh);
 
 // How a box is cut into columns.

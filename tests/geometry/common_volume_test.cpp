@@ -95,8 +95,9 @@ TEST(CommonVolume, OfAMeshWithItself) {
   const double of_inner = mass_properties(inner).volume;
   EXPECT_NEAR(overlap_volume(joined(sphere_mesh(24), inner)).value(), of_inner, 2e-3 * of_inner);
   TriangleMesh layers = box;
-  for (int i = 0; i < 300; ++i) layers = joined(layers, box);
-  EXPECT_EQ(overlap_volume(layers), std::nullopt);
+  for (int i = 1; i < 16; ++i) layers = joined(layers, box);
+  EXPECT_NEAR(overlap_volume(layers).value(), 15.0 * 2.0, 1e-11) << "32 crossings";
+  EXPECT_EQ(overlap_volume(joined(layers, box)), std::nullopt);
   EXPECT_EQ(overlap_volume(joined(sphere_mesh(24), inside_out(sphere_mesh(24, 0.5)))), 0.0);
 }
 
