@@ -39,11 +39,11 @@ Expected<std::string> read_text_file(const std::filesystem::path& path, const st
 
 Expected<void> write_file(const std::filesystem::path& path, const std::string& bytes) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
-  bool written = file != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  const int write_error = errno;
-  if (file != nullptr) written = std::fclose(file) == 0 && written;
-  if (written) return {};
-  return make_error({path.string(), std::generic_category().message(file == nullptr ? write_error : errno),
+  const bool written = file != nullptr && std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const int write_error = errno;  // closing may set another
+  const bool closed = file != nullptr && std::fclose(file) == 0;
+  if (written && closed) return {};
+  return make_error({path.string(), std::generic_category().message(written ? errno : write_error),
                      "a file that can be written", "", ""});
 }
 

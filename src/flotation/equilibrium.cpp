@@ -48,13 +48,12 @@ class EquilibriumSearch {
       descend(-axis);
     }
     // The more attitudes are known, the fewer starts lead to one that is not, and the more are needed.
-    const auto enough = [&](int starts) { return 16 + static_cast<int>(4 * found_.size()) <= starts; };
+    const auto enough = [&] { return 16 + static_cast<int>(4 * found_.size()); };
     int last_news = 0;
-    for (int n = 0; n < kMaxStarts && (n < kMinStarts || !enough(n - last_news)); ++n) {
+    for (int n = 0; n < kMaxStarts && (n < kMinStarts || n - last_news < enough()); ++n) {
       if (descend(direction(n))) last_news = n;
       if (options.progress) {
-        const int needed = last_news + 12 + static_cast<int>(2 * found_.size());
-        options.progress(n + 1, std::min(std::max({needed, kMinStarts, n + 1}), kMaxStarts));
+        options.progress(n + 1, std::min(std::max(last_news + enough(), kMinStarts), kMaxStarts));
       }
       if (!found_.empty() && found_.front().family == AttitudeFamily::kSphere) return;
     }

@@ -57,7 +57,7 @@ void SequenceGaps::fill(State& session, std::int64_t seq) {
   if (seq > last) return;
   session.gaps.erase(gap);
   if (first < seq) session.gaps.emplace(first, seq - 1);
-  if (seq < last) session.gaps.emplace(seq + 1, last);
+  if (seq < last && session.gaps.size() < kMaxGaps) session.gaps.emplace(seq + 1, last);
   --missing_;
 }
 

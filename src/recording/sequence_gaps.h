@@ -3,8 +3,9 @@
 //
 // A session counts from the first number that was seen. A lower one later belongs to a client that started
 // over with the same session_id: it is ignored. Of more than kMaxSessions sessions the least recently used
-// one is closed; what it lacks stays counted. While kMaxGaps gaps of a session are stored, further ones are
-// only counted: messages that arrive late for them stay counted as missing.
+// one is closed; what it lacks stays counted. While kMaxGaps gaps of a session are stored, further ones, and
+// what a late message cuts off the end of a gap, are only counted: messages that arrive late for them stay
+// counted as missing.
 #pragma once
 
 #include <cstddef>

@@ -129,9 +129,10 @@ std::vector<FlotationOfBody> scene_flotation(const Scene& scene, std::size_t max
     append_direction(body.dynamics.orientation.normalized().conjugate() * scene.water().up_W, key);
     auto found = known.find(key);
     if (found == known.end()) {
-      vertices += std::max(body.prepared_mesh->mesh.surface.x.size(), kMinVertices);
-      entry.left_out = vertices > max_vertices && !known.empty();
+      const std::size_t more = std::max(body.prepared_mesh->mesh.surface.x.size(), kMinVertices);
+      entry.left_out = vertices + more > max_vertices && !known.empty();
       if (entry.left_out) continue;
+      vertices += more;
       const Expected<FloatingBody> floating = floating_body_of(body, meshes.of(*body.prepared_mesh), *own);
       std::shared_ptr<const BodyFlotation> computed;
       if (floating) {

@@ -360,9 +360,10 @@ std::vector<MotionsOfBody> scene_motions(const Scene& scene, std::size_t max_ver
     BodyKey key = key_of(body, keys, *own);
     auto found = known.find(key);
     if (found == known.end()) {
-      vertices += body.prepared_mesh->mesh.surface.x.size();
-      entry.left_out = vertices > max_vertices;
+      const std::size_t more = body.prepared_mesh->mesh.surface.x.size();
+      entry.left_out = vertices + more > max_vertices;
       if (entry.left_out) continue;
+      vertices += more;
       const std::optional<BodyMotions> motions =
           body_motions(body, meshes.of(*body.prepared_mesh), scene.water(), scene.current_W());
       found = known.emplace(std::move(key), motions ? std::make_shared<const BodyMotions>(*motions) : nullptr)

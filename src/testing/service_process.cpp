@@ -163,7 +163,7 @@ struct ServiceProcess::Impl {
       int ended = 0;
       while (child > 0 && waitpid(child, &ended, 0) < 0 && errno == EINTR) {
       }
-      status = ended;
+      if (child > 0) status = ended;
     });
     return result.get();
   }

@@ -108,5 +108,16 @@ TEST(SequenceGaps, CountsBeyondItsLimits) {
   EXPECT_EQ(one.incomplete_sessions()[0].gaps.size(), SequenceGaps::kMaxGaps - 1);
 }
 
+TEST(SequenceGaps, StaysBoundedWhereLateMessagesDivideOneGap) {
+  SequenceGaps gaps;
+  const auto late = static_cast<std::int64_t>(2 * SequenceGaps::kMaxGaps);
+  gaps.add(1, 0);
+  gaps.add(1, 2 * late + 2);
+  for (std::int64_t i = 1; i <= late; ++i) gaps.add(1, 2 * i);
+  EXPECT_EQ(gaps.incomplete_sessions()[0].gaps.size(), SequenceGaps::kMaxGaps);
+  EXPECT_GE(gaps.missing(), late + 1) << "none is counted as seen that was not";
+  EXPECT_TRUE(gaps.is_missing(1, 1));
+}
+
 }  // namespace
 }  // namespace buoyancy

@@ -319,6 +319,17 @@ TEST(SceneMotions, EqualBodiesShareTheirMotions) {
   EXPECT_FALSE(scene_motions(scene, 16)[2].left_out);
 }
 
+TEST(SceneMotions, LeaveOutALargeBodyAndNotTheSmallOnesAfterIt) {
+  const std::string client = "[body.client]\nmass = 600\n";
+  const Scene scene =
+      prepared(kWorld + "[[body]]\nid = 1\nshape = { type = \"sphere\", radius = 1, segments = 40 }\n" +
+               client + "[[body]]\nid = 2\nshape = { type = \"box\", size = [2, 1, 0.5] }\n" + client);
+  const std::vector<MotionsOfBody> bodies = scene_motions(scene, 100);
+  EXPECT_TRUE(bodies[0].left_out);
+  EXPECT_FALSE(bodies[1].left_out);
+  EXPECT_NE(bodies[1].motions, nullptr);
+}
+
 // The box of floating_box.h with 100 kg of liquid in a tank on its bottom.
 std::string box_with_tank(const std::string& fill_and_density, double own_mass) {
   return kWorld + "[[body]]\nid = 1\nshape = { type = \"box\", size = [2, 1, 0.5] }\n" +
