@@ -102,7 +102,7 @@ class Clips {
     t.s = kept.s();
     t.curvature = kept.curvature();
     const PatchIntegrals<Number> integrals = to_patch<Number>(integrate<Number>(query, t), kept.lever(),
-                                                              kept.center(), kept.radius(), kept.s_per_phi());
+                                                              kept.center(), kept.radius(), kept.certificate_factor());
     add_sums(integrals, tasks, count, results);
   }
 

@@ -272,35 +272,37 @@ class Descent {
                                    std::size_t volume_cell) {
     const V zero = set<Number>(0.0);
     const auto read = [&](const Batch<Number>& b, auto row) HWY_ATTR { return work_.units.read(b, row); };
-    const Place<Number> place{read(batch, &UnitPlace<Number>::x1), read(batch, &UnitPlace<Number>::x2),
-                              read(batch, &UnitPlace<Number>::zeta)};
-    const SurfaceValues<Number> surface{
-        read(batch, &UnitPlace<Number>::eta),      read(batch, &UnitPlace<Number>::eta_1),
-        read(batch, &UnitPlace<Number>::eta_2),    read(batch, &UnitPlace<Number>::eta_11),
-        read(batch, &UnitPlace<Number>::eta_12),   read(batch, &UnitPlace<Number>::eta_22),
-        read(batch, &UnitPlace<Number>::eta_third)};
+    PatchField<Number> field;
+    field.place = {read(batch, &UnitPlace<Number>::x1), read(batch, &UnitPlace<Number>::x2),
+                   read(batch, &UnitPlace<Number>::zeta)};
+    field.surface = {read(batch, &UnitPlace<Number>::eta),      read(batch, &UnitPlace<Number>::eta_1),
+                     read(batch, &UnitPlace<Number>::eta_2),    read(batch, &UnitPlace<Number>::eta_11),
+                     read(batch, &UnitPlace<Number>::eta_12),   read(batch, &UnitPlace<Number>::eta_22),
+                     read(batch, &UnitPlace<Number>::eta_third)};
     const CellCenter& above = cells().surface_center(surface_cell);
-    const V x1 = place.x1 - set<Number>(above.x1);
-    const V x2 = place.x2 - set<Number>(above.x2);
+    const V x1 = field.place.x1 - set<Number>(above.x1);
+    const V x2 = field.place.x2 - set<Number>(above.x2);
     const V horizontal = hn::MulAdd(x1, x1, x2 * x2);
-    const CellBounds<Number>& surface_bounds = cells().surface(surface_cell).bounds;
-    VolumeValues<Number> f{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
-    V volume_reach = zero;
-    const CellBounds<Number>* volume_bounds = &surface_bounds;
-    if (!query_.hydrostatic) {
+    field.surface_bounds = &cells().surface(surface_cell).bounds;
+    field.surface_reach = hn::Sqrt(horizontal);
+    if (query_.hydrostatic) {
+      field.f = {zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
+      field.volume_bounds = field.surface_bounds;
+      field.volume_reach = zero;
+    } else {
       const VolumeCell<Number>& cell = cells().volume(volume_cell);
-      const V z =
-          stretched<Number>(patch_, place, surface.eta) - set<Number>(cells().volume_center(volume_cell).z);
-      f = evaluate<Number>(cell, x1, x2, z);
-      volume_reach = hn::Sqrt(hn::MulAdd(z, z, horizontal));
-      volume_bounds = &cell.bounds;
+      const V z = stretched<Number>(patch_, field.place, field.surface.eta) -
+                  set<Number>(cells().volume_center(volume_cell).z);
+      field.f = evaluate<Number>(cell, x1, x2, z);
+      field.volume_bounds = &cell.bounds;
+      field.volume_reach = hn::Sqrt(hn::MulAdd(z, z, horizontal));
     }
     const auto in_use = hn::FirstN(LanesOf<Number>(), batch.count * kUnit<Number>);
     const UnitsOfVector<Number> units = work_.units.units_of(batch);
     const PatchMoments<Number> moments = read_moments<Number>(work_.patches, units);
-    const PatchModel<Number> model =
-        model_of<Number>(patch_, place, moments.radius, spread_of<Number>(moments), surface, surface_bounds,
-                         hn::Sqrt(horizontal), f, *volume_bounds, volume_reach);
+    field.r = moments.radius * set<Number>(patch_.k_max);
+    field.spread = spread_of<Number>(moments);
+    const PatchModel<Number> model = model_of<Number>(patch_, field);
     too_steep_ |= !hn::AllFalse(LanesOf<Number>(), model.too_steep);
     const auto counts = hn::AndNot(model.dry, in_use);
     PatchIntegrals<Number> integrals = integrate<Number>(patch_, moments, model);

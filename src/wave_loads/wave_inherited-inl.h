@@ -79,11 +79,11 @@ HWY_INLINE Inherited<Number> inherit(const PatchQuery<Number>& query, const Patc
   model.s = moved<Number>(kept.s(), y);
   model.third = kept.third();
   model.cubic = {zero, zero, zero};
-  model.third_of_parts = set<Number>(8.0) * kept.third();  // parts inherit it
+  model.third_of_children = set<Number>(8.0) * kept.third();  // parts inherit it
   model.curvature = kept.curvature();
   model.delta = kept.delta() + rounding_of_move<Number>(query, kept.phi(), from_kept, r, kept.curvature());
   model.mean_delta = model.delta;
-  model.delta_of_parts = model.delta;
+  model.delta_of_children = model.delta;
   model.s_third = kept.s_third();
   model.s_cubic = {zero, zero, zero};
   model.s_curvature = kept.s_curvature();
@@ -97,7 +97,7 @@ HWY_INLINE Inherited<Number> inherit(const PatchQuery<Number>& query, const Patc
   model.dry = hn::Gt(model.s.value - variation, zero);
   model.whole = hn::Lt(model.s.value + variation, zero);
   model.wet = set_mask<Number>(false);  // what it selects is of no use here
-  model.s_per_phi = hn::IfThenZeroElse(model.whole, kept.s_per_phi());
+  model.certificate_factor = hn::IfThenZeroElse(model.whole, kept.certificate_factor());
   model.too_steep = set_mask<Number>(false);
   return result;
 }

@@ -13,7 +13,6 @@
 #include <hwy/highway.h>
 
 #include "wave_loads/wave_models-inl.h"
-#include "wave_loads/wave_places-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
@@ -213,7 +212,7 @@ HWY_INLINE VectorOf<Number> cubic_remainder(const DistanceMoments<Number>& m, co
 template <typename Number>
 HWY_INLINE VectorOf<Number> expected_remainder(const DistanceMoments<Number>& m,
                                                const PatchModel<Number>& model) {
-  const VectorOf<Number> of_third = model.third_of_parts * m.mu3 * set<Number>(1.0 / 48.0);
+  const VectorOf<Number> of_third = model.third_of_children * m.mu3 * set<Number>(1.0 / 48.0);
   const VectorOf<Number> of_fourth =
       hn::MulAdd(model.cubic.norm * set<Number>(1.0 / 48.0), m.nu3,
                  hn::MulAdd(model.cubic.rest * set<Number>(1.0 / 96.0), m.mu3,
@@ -314,14 +313,14 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
   const V quarter = set<Number>(0.25);
   // The order of the operands matters where the first is not a number.
   result.expected = hn::Min(expected_remainder<Number>(distances, model) +
-                                quarter * hn::MulAdd(model.delta_of_parts, m.area, of_crossing),
+                                quarter * hn::MulAdd(model.delta_of_children, m.area, of_crossing),
                             quarter * result.force_error);
   const V local =
       phi.linear_error * mu1 + model.delta * mu1 + offset_remainder<Number>(distances, m.radius, model);
   result.torque_error = hn::Sqrt(dot<Number>(lever, lever)) * result.force_error + local;
   result.volume_error =
       volume_remainder<Number>(m.area, distances, model) +
-      hn::IfThenElse(model.whole, model.s_per_phi * model.mean_delta * m.area,
+      hn::IfThenElse(model.whole, model.certificate_factor * model.mean_delta * m.area,
                      hn::MulAdd(depth.quadratic_error, m.area, quarter * model.s_curvature * m.mu2));
   clear_where<Number>(model.dry, result);
   return result;

@@ -19,7 +19,6 @@
 #include "wave_loads/wave_lanes-inl.h"
 #include "wave_loads/wave_models-inl.h"
 #include "wave_loads/wave_patches-inl.h"
-#include "wave_loads/wave_places-inl.h"
 #include "wave_loads/wave_results-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -54,7 +53,7 @@ struct KeptModelLanes {
   // Rows 28 to 30: what neither clipping nor an inherited model changes of the bounds of the force, the
   // torque and the volume.
   static constexpr std::size_t kRemainder = 28;
-  HWY_INLINE const V& s_per_phi() const { return rows[31]; }
+  HWY_INLINE const V& certificate_factor() const { return rows[31]; }
   HWY_INLINE const V& third() const { return rows[32]; }
   HWY_INLINE const V& delta() const { return rows[33]; }
   HWY_INLINE const V& s_third() const { return rows[34]; }
@@ -145,7 +144,7 @@ class KeptModels {
     put_quadratic(model.s);
     put(model.curvature, moments.radius, lever.x, lever.y, lever.z, moments.center.x, moments.center.y,
         moments.center.z, remainder, hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)), remainder, local),
-        hn::MulAdd(model.s_per_phi, remainder, of_volume), model.s_per_phi, model.third, model.delta,
+        hn::MulAdd(model.certificate_factor, remainder, of_volume), model.certificate_factor, model.third, model.delta,
         model.s_third, model.s_delta, model.s_curvature, origin.x, origin.y, origin.z);
     return static_cast<std::uint32_t>(count_++);
   }

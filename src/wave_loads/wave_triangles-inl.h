@@ -14,7 +14,6 @@
 
 #include "wave_loads/wave_integrals-inl.h"
 #include "wave_loads/wave_models-inl.h"
-#include "wave_loads/wave_places-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
@@ -217,12 +216,12 @@ HWY_INLINE TriangleIntegrals<Number> integrate(const PatchQuery<Number>& query,
 }
 
 // Integrals of triangles as those of patches; what the model leaves out is not part of the errors. lever:
-// centroid from the reference point. radius, s_per_phi: of the patch.
+// centroid from the reference point. radius, certificate_factor: of the patch.
 template <typename Number>
 HWY_INLINE PatchIntegrals<Number> to_patch(const TriangleIntegrals<Number>& sums,
                                            const Vectors3<Number>& lever, const Vectors3<Number>& center,
                                            const VectorOf<Number>& radius,
-                                           const VectorOf<Number>& s_per_phi) {
+                                           const VectorOf<Number>& certificate_factor) {
   PatchIntegrals<Number> result;
   result.force = {hn::Neg(sums.force.x), hn::Neg(sums.force.y), hn::Neg(sums.force.z)};
   result.torque = cross<Number>(lever, result.force) - sums.offset_torque;
@@ -231,7 +230,7 @@ HWY_INLINE PatchIntegrals<Number> to_patch(const TriangleIntegrals<Number>& sums
   result.force_error = sums.strip;
   result.expected = sums.strip;
   result.torque_error = hn::MulAdd(hn::Sqrt(dot<Number>(lever, lever)) + radius, sums.strip, sums.cubic);
-  result.volume_error = s_per_phi * sums.strip;
+  result.volume_error = certificate_factor * sums.strip;
   return result;
 }
 

@@ -18,7 +18,6 @@
 
 #include "wave_loads/wave_models-inl.h"
 #include "wave_loads/wave_patches-inl.h"
-#include "wave_loads/wave_places-inl.h"
 #include "wave_loads/wave_query.h"
 #include "wave_loads/wave_results-inl.h"
 #include "wave_loads/wave_sea_cells-inl.h"
