@@ -21,15 +21,11 @@
 
 #include "base/thread_workspace.h"
 #include "wave_loads/wave_clips-inl.h"
-#include "wave_loads/wave_inherited-inl.h"
 #include "wave_loads/wave_integrals-inl.h"
-#include "wave_loads/wave_kept_models-inl.h"
 #include "wave_loads/wave_load.h"
-#include "wave_loads/wave_patches-inl.h"
+#include "wave_loads/wave_load_sum-inl.h"
 #include "wave_loads/wave_query.h"
-#include "wave_loads/wave_refinement-inl.h"
-#include "wave_loads/wave_results-inl.h"
-#include "wave_loads/wave_units-inl.h"
+#include "wave_loads/wave_round-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
@@ -38,12 +34,12 @@ namespace HWY_NAMESPACE {
 template <typename Number>
 struct DescentWorkspace {
   QueryPatches patches;
-  RoundUnits<Number> units;
-  Results<Number> results;
+  RoundPatches<Number> round;
+  LoadSum<Number> sum;
   std::vector<Number> roots;  // of the results' expected errors
-  KeptModels<Number> kept;
-  Clips<Number> clips;
-  InheritedUnits<Number> inherited;
+  ModelCache<Number> cache;
+  ClippedLeaves<Number> clips;
+  InheritingPatches<Number> inherited;
   std::vector<std::uint32_t> first;    // blocks
   std::vector<std::uint32_t> refined;  // results
 };
@@ -56,23 +52,23 @@ class Descent {
   Descent(const WaveQuery& query, DescentWorkspace<Number>& work)
       : query_(query), work_(work), patch_(patch_query_of<Number>(query)) {
     work_.patches.start(*query.tree);
-    work_.units.start(query_, work_.patches, patch_);
-    work_.results.start(query.max_lever);
-    work_.kept.clear();
-    work_.clips.start(work_.kept);
-    work_.inherited.start(work_.kept);
+    work_.round.start(query_, work_.patches, patch_);
+    work_.sum.start(query.max_lever);
+    work_.cache.clear();
+    work_.clips.start(work_.cache);
+    work_.inherited.start(work_.cache);
   }
 
   WaveLoad run() {
     add_first_level();
     evaluate_round();
     constexpr int kMaxRounds = 24;
-    for (int round = 0; round < kMaxRounds && work_.results.total() > query_.budget; ++round) {
+    for (int round = 0; round < kMaxRounds && work_.sum.total() > query_.budget; ++round) {
       if (patches_ > kMaxPatches || cells().full() || !refine()) break;
       evaluate_round();
     }
-    WaveLoad load = work_.results.sum();
-    load.capped = work_.results.total() > query_.budget;
+    WaveLoad load = work_.sum.load();
+    load.capped = work_.sum.total() > query_.budget;
     load.too_steep = too_steep_;
     load.patches = static_cast<std::int32_t>(patches_);
     load.cells = static_cast<std::int32_t>(cells().surface_count() + cells().volume_count());
@@ -85,7 +81,7 @@ class Descent {
   // Children inherit a model that leaves out at most this share of the limit: chosen for the least time.
   static constexpr double kInheritedShare = 0.3;
 
-  const SeaCells<Number>& cells() const { return work_.units.cells(); }
+  const SeaCells<Number>& cells() const { return work_.round.cells(); }
 
   // Whether none of a block's patches is a leaf.
   static bool all_inner(const PatchBlock& block) {
@@ -111,14 +107,14 @@ class Descent {
       first[n] = block.child[0];
       for (std::size_t lane = 1; lane < block.patches; ++lane) first.push_back(block.child[lane]);
     }
-    for (const std::uint32_t b : first) work_.units.add_block(b);
+    for (const std::uint32_t b : first) work_.round.add_block(b);
   }
 
   // Whether patches of a block can be expected to be refined: by the third derivative that the sea usually
   // has at their depth where they are wet, and as crossing ones where they are near the surface.
   HWY_INLINE bool is_too_large(const PatchBlock& block) const {
-    const UnitOf<float> d;
-    using F = hn::Vec<UnitOf<float>>;
+    const GroupTag<float> d;
+    using F = hn::Vec<GroupTag<float>>;
     const auto number = [&](double x) HWY_ATTR { return hn::Set(d, static_cast<float>(x)); };
     const SeaExpansion& sea = *query_.expansion;
     const double factor = query_.sea->amplitude_factor();
@@ -152,9 +148,9 @@ class Descent {
   bool refine() {
     for (;;) {
       // Once triangles that cannot be refined have most of the budget, the others need not have much less.
-      const double budget = std::max(query_.budget - work_.results.settled(), 0.5 * work_.results.settled());
+      const double budget = std::max(query_.budget - work_.sum.settled(), 0.5 * work_.sum.settled());
       const double limit =
-          refinement_limit<Number>(work_.results.errors(), work_.results.expected(), work_.roots, budget);
+          refinement_limit<Number>(work_.sum.errors(), work_.sum.expected(), work_.roots, budget);
       find_results_above(limit);
       if (work_.refined.empty()) return false;
       if (refine_found(limit)) return true;
@@ -164,59 +160,61 @@ class Descent {
   // Returns whether any could be refined.
   bool refine_found(double limit) {
     bool refined = false;
-    const std::size_t max_units = query_.cap_on(kMaxUnits);
+    const std::size_t max_groups = query_.cap_on(kMaxGroups);
     for (const std::uint32_t n : work_.refined) {
-      // What one round adds is capped as well: it may reach a new cell with each of its units.
-      if (units_of_next_round() > max_units) break;
-      const Unit unit = work_.results.unit_of(n);
-      const std::size_t lane = unit.first + n % kUnit<Number>;
-      const PatchBlock& block = work_.patches.block(unit.block);
-      const KeptModel kept{work_.results.kept_models(n), static_cast<std::uint32_t>(n % kLanes<Number>)};
-      const double remainder = kept.models == kNone ? std::numeric_limits<double>::infinity()
-                                                    : static_cast<double>(work_.kept.remainder(kept));
+      // What one round adds is capped as well: it may reach a new cell with each of its groups.
+      if (groups_of_next_round() > max_groups) break;
+      const PatchGroup group = work_.sum.group_of(n);
+      const std::size_t lane = group.first + n % kGroup<Number>;
+      const PatchBlock& block = work_.patches.block(group.block);
+      const CachedModel kept{work_.sum.cached_models(n), static_cast<std::uint32_t>(n % kLanes<Number>)};
+      const double remainder =
+          kept.models == kNone
+              ? std::numeric_limits<double>::infinity()
+              : static_cast<double>(work_.cache.number(kept, CachedModelLanes<Number>::kForceRemainder));
       if (block.triangle_blocks[lane] > 0) {
-        refined |= refine_leaf(n, unit.block, lane, kept, remainder < limit);
+        refined |= refine_leaf(n, group.block, lane, kept, remainder < limit);
         continue;
       }
       refined = true;
       const bool grandchildren = reaches_grandchildren(n, limit);
-      work_.results.remove(n);
+      work_.sum.remove(n);
       add_children(block.child[lane], grandchildren,
-                   remainder < kInheritedShare * limit ? kept : KeptModel{});
+                   remainder < kInheritedShare * limit ? kept : CachedModel{});
     }
     return refined;
   }
 
-  // Clips a leaf with the model that was kept of it, or replaces it by its triangles where that model leaves
-  // out too much. Returns whether either could be done.
-  bool refine_leaf(std::uint32_t n, std::uint32_t block, std::size_t lane, const KeptModel& kept,
+  // Clips a leaf with the model that was kept of it, or replaces it by its triangles where that model
+  // leaves out too much. Returns whether either could be done.
+  bool refine_leaf(std::uint32_t n, std::uint32_t block, std::size_t lane, const CachedModel& kept,
                    bool is_good) {
     if (!is_good) {
       const QueryPatches::Blocks triangles = work_.patches.add_triangles_of_leaf(block, lane);
       if (triangles.first != triangles.end) {
-        work_.results.remove(n);
-        for (std::uint32_t b = triangles.first; b < triangles.end; ++b) work_.units.add_block(b);
+        work_.sum.remove(n);
+        for (std::uint32_t b = triangles.first; b < triangles.end; ++b) work_.round.add_block(b);
         return true;
       }
       if (kept.models == kNone) {
-        work_.results.settle(n);
+        work_.sum.settle(n);
         return false;
       }
     }
-    work_.results.remove(n);
+    work_.sum.remove(n);
     work_.clips.add(work_.patches, work_.patches.block(block), lane, kept, n);
     return true;
   }
 
   // Whether a result's children are expected to be above the limit as well.
   bool reaches_grandchildren(std::size_t n, double limit) const {
-    return static_cast<double>(work_.results.expected()[n]) > kChildrenAbove * limit;
+    return static_cast<double>(work_.sum.expected()[n]) > kChildrenAbove * limit;
   }
 
   // Finds the results that are refined, and fetches what is read of the tree before their children are.
   void find_results_above(double limit) {
     const LanesOf<Number> d;
-    const std::span<const Number> errors = work_.results.errors();
+    const std::span<const Number> errors = work_.sum.errors();
     work_.refined.clear();
     for (std::size_t first = 0; first < errors.size(); first += kLanes<Number>) {
       const auto above = hn::Gt(hn::LoadU(d, &errors[first]), set<Number>(limit));
@@ -225,23 +223,23 @@ class Descent {
             static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::countr_zero(lanes));
         work_.refined.push_back(n);
         if (!reaches_grandchildren(n, limit)) continue;
-        const Unit& unit = work_.results.unit_of(n);
-        const PatchBlock& block = work_.patches.block(unit.block);
-        const std::size_t lane = unit.first + n % kUnit<Number>;
+        const PatchGroup& group = work_.sum.group_of(n);
+        const PatchBlock& block = work_.patches.block(group.block);
+        const std::size_t lane = group.first + n % kGroup<Number>;
         if (block.triangle_blocks[lane] == 0) prefetch_sizes(work_.patches.block(block.child[lane]));
       }
     }
   }
 
-  std::size_t units_of_next_round() const { return work_.units.count() + work_.inherited.count(); }
+  std::size_t groups_of_next_round() const { return work_.round.count() + work_.inherited.count(); }
 
   // kept: the model that they inherit, or none.
-  void add_children(std::uint32_t b, bool grandchildren, const KeptModel& kept) {
+  void add_children(std::uint32_t b, bool grandchildren, const CachedModel& kept) {
     const auto add = [&](std::uint32_t of_children) {
       if (kept.models != kNone) {
         work_.inherited.add_block(work_.patches, of_children, kept);
       } else {
-        work_.units.add_block(of_children);
+        work_.round.add_block(of_children);
       }
     };
     const PatchBlock& block = work_.patches.block(b);
@@ -252,33 +250,33 @@ class Descent {
     for (std::size_t lane = 0; lane < block.patches; ++lane) add(block.child[lane]);
   }
 
-  // Evaluates the units of the round and appends their results.
+  // Evaluates the groups of the round and appends their results.
   void evaluate_round() {
-    work_.units.evaluate_surface();
+    work_.round.evaluate_surface();
     if (query_.hydrostatic) {
-      work_.units.for_each_batch_of_surface(
+      work_.round.for_each_batch_of_surface(
           [this](const Batch<Number>& batch, std::size_t cell) { evaluate_batch(batch, cell, 0); });
     } else {
-      work_.units.for_each_batch_of_volume([this](const Batch<Number>& batch, std::size_t cell) {
+      work_.round.for_each_batch_of_volume([this](const Batch<Number>& batch, std::size_t cell) {
         evaluate_batch(batch, cells().column_of_volume(cell), cell);
       });
     }
-    work_.clips.finish(work_.patches, patch_, work_.results);
-    patches_ += work_.inherited.finish(work_.patches, patch_, work_.results);
-    work_.units.clear();
+    work_.clips.finish(work_.patches, patch_, work_.sum);
+    patches_ += work_.inherited.finish(work_.patches, patch_, work_.sum);
+    work_.round.clear();
   }
 
   HWY_NOINLINE void evaluate_batch(const Batch<Number>& batch, std::size_t surface_cell,
                                    std::size_t volume_cell) {
     const V zero = set<Number>(0.0);
-    const auto read = [&](const Batch<Number>& b, auto row) HWY_ATTR { return work_.units.read(b, row); };
+    const auto read = [&](const Batch<Number>& b, auto row) HWY_ATTR { return work_.round.read(b, row); };
     PatchField<Number> field;
-    field.place = {read(batch, &UnitPlace<Number>::x1), read(batch, &UnitPlace<Number>::x2),
-                   read(batch, &UnitPlace<Number>::zeta)};
-    field.surface = {read(batch, &UnitPlace<Number>::eta),      read(batch, &UnitPlace<Number>::eta_1),
-                     read(batch, &UnitPlace<Number>::eta_2),    read(batch, &UnitPlace<Number>::eta_11),
-                     read(batch, &UnitPlace<Number>::eta_12),   read(batch, &UnitPlace<Number>::eta_22),
-                     read(batch, &UnitPlace<Number>::eta_third)};
+    field.place = {read(batch, &GroupPlace<Number>::x1), read(batch, &GroupPlace<Number>::x2),
+                   read(batch, &GroupPlace<Number>::zeta)};
+    field.surface = {read(batch, &GroupPlace<Number>::eta),      read(batch, &GroupPlace<Number>::eta_1),
+                     read(batch, &GroupPlace<Number>::eta_2),    read(batch, &GroupPlace<Number>::eta_11),
+                     read(batch, &GroupPlace<Number>::eta_12),   read(batch, &GroupPlace<Number>::eta_22),
+                     read(batch, &GroupPlace<Number>::eta_third)};
     const CellCenter& above = cells().surface_center(surface_cell);
     const V x1 = field.place.x1 - set<Number>(above.x1);
     const V x2 = field.place.x2 - set<Number>(above.x2);
@@ -297,20 +295,20 @@ class Descent {
       field.volume_bounds = &cell.bounds;
       field.volume_reach = hn::Sqrt(hn::MulAdd(z, z, horizontal));
     }
-    const auto in_use = hn::FirstN(LanesOf<Number>(), batch.count * kUnit<Number>);
-    const UnitsOfVector<Number> units = work_.units.units_of(batch);
-    const PatchMoments<Number> moments = read_moments<Number>(work_.patches, units);
+    const auto in_use = hn::FirstN(LanesOf<Number>(), batch.count * kGroup<Number>);
+    const GroupsOfVector<Number> groups = work_.round.groups_of(batch);
+    const PatchMoments<Number> moments = read_moments<Number>(work_.patches, groups);
     field.r = moments.radius * set<Number>(patch_.k_max);
     field.spread = spread_of<Number>(moments);
     const PatchModel<Number> model = model_of<Number>(patch_, field);
     too_steep_ |= !hn::AllFalse(LanesOf<Number>(), model.too_steep);
     const auto counts = hn::AndNot(model.dry, in_use);
     PatchIntegrals<Number> integrals = integrate<Number>(patch_, moments, model);
-    const KeptOfBatch kept = work_.kept.keep_crossing(work_.patches, units, hn::AndNot(model.whole, counts),
-                                                      patch_, moments, model, moments.center);
+    const CachedOfBatch kept = work_.cache.keep_crossing(
+        work_.patches, groups, hn::AndNot(model.whole, counts), patch_, moments, model, moments.center);
     patches_ += hn::CountTrue(LanesOf<Number>(), counts);
     clear_where<Number>(hn::Not(counts), integrals);
-    work_.results.add(units, integrals, kept);
+    work_.sum.add(groups, integrals, kept);
   }
 
   const WaveQuery& query_;

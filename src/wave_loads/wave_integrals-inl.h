@@ -1,5 +1,5 @@
-// The integrals of a model of the pressure over patches that are not clipped, with SIMD
-// (docs/wave_mathematics.md, "What a patch contributes"). Included once per instruction set.
+// Patches of the tree in lanes, and the integrals of a model of the pressure over those that are not clipped,
+// with SIMD (docs/wave_mathematics.md, "What a patch contributes"). Included once per instruction set.
 #if defined(BUOYANCY_WAVE_INTEGRALS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_WAVE_INTEGRALS_INL_H
 #undef BUOYANCY_WAVE_INTEGRALS_INL_H
@@ -9,14 +9,110 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "wave_loads/patch_tree.h"
 #include "wave_loads/wave_models-inl.h"
+#include "wave_loads/wave_query.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
+
+// What is evaluated together: kGroup patches of a block of the tree.
+struct PatchGroup {
+  std::uint32_t block = 0;
+  std::uint32_t first = 0;  // lane of the block
+  bool dry = false;         // all of its patches are
+  std::uint32_t surface_cell = 0, volume_cell = 0;
+  std::uint32_t next = kNone;  // in the same cell
+};
+
+template <typename Number>
+using GroupsOfVector = std::array<PatchGroup, kGroupsPerVector<Number>>;
+
+template <typename Number>
+struct PatchMoments {
+  Vectors3<Number> center;
+  VectorOf<Number> radius, area, mu2, mu3, nu3;
+  std::array<VectorOf<Number>, 3> S;
+  std::array<VectorOf<Number>, 9> N;
+  std::array<VectorOf<Number>, 18> P;
+};
+
+// Fetch what is read of a block later: where its patches are; how large they are and what they hold; all but
+// where they are.
+inline constexpr std::size_t kCacheLine = 64;
+inline void prefetch_places(const PatchBlock& block) {
+  static_assert(offsetof(PatchBlock, area) == kCacheLine);
+  hwy::Prefetch(&block.center);
+}
+inline void prefetch_sizes(const PatchBlock& block) {
+  static_assert(offsetof(PatchBlock, mu2) == 2 * kCacheLine);
+  hwy::Prefetch(&block.area);
+}
+inline void prefetch_moments(const PatchBlock& block) {
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&block);
+  for (std::size_t at = kCacheLine; at < sizeof(PatchBlock); at += kCacheLine) hwy::Prefetch(bytes + at);
+}
+
+// Calls take(first lane) for each group of a block.
+template <typename Number, typename Take>
+HWY_INLINE void for_each_group(const PatchBlock& block, const Take& take) {
+  take(0U);  // without a look at the block, which may not be in the cache yet
+  for (std::uint32_t first = kGroup<Number>; first < kSiblings && first < block.patches;
+       first += kGroup<Number>) {
+    take(first);
+  }
+}
+
+// Reads the moments of the patches of a vector of groups.
+template <typename Number>
+HWY_INLINE PatchMoments<Number> read_moments(const QueryPatches& patches,
+                                             const GroupsOfVector<Number>& groups) {
+  std::array<const PatchBlock*, kGroupsPerVector<Number>> blocks;
+  for (std::size_t n = 0; n < blocks.size(); ++n) blocks[n] = &patches.block(groups[n].block);
+  const auto get = [&](const auto& member) HWY_ATTR {
+    return gather_groups<Number>([&](std::size_t n) { return member(*blocks[n]).data() + groups[n].first; });
+  };
+  PatchMoments<Number> m;
+  m.center = {get([](const PatchBlock& b) -> const FourFloats& { return b.center[0]; }),
+              get([](const PatchBlock& b) -> const FourFloats& { return b.center[1]; }),
+              get([](const PatchBlock& b) -> const FourFloats& { return b.center[2]; })};
+  m.radius = get([](const PatchBlock& b) -> const FourFloats& { return b.radius; });
+  m.area = get([](const PatchBlock& b) -> const FourFloats& { return b.area; });
+  m.mu2 = get([](const PatchBlock& b) -> const FourFloats& { return b.mu2; });
+  m.mu3 = get([](const PatchBlock& b) -> const FourFloats& { return b.mu3; });
+  m.nu3 = get([](const PatchBlock& b) -> const FourFloats& { return b.nu3; });
+#pragma GCC unroll 3
+  for (std::size_t i = 0; i < 3; ++i) {
+    m.S[i] = get([i](const PatchBlock& b) -> const FourFloats& { return b.S[i]; });
+  }
+#pragma GCC unroll 9
+  for (std::size_t i = 0; i < 9; ++i) {
+    m.N[i] = get([i](const PatchBlock& b) -> const FourFloats& { return b.N[i]; });
+  }
+#pragma GCC unroll 18
+  for (std::size_t i = 0; i < 18; ++i) {
+    m.P[i] = get([i](const PatchBlock& b) -> const FourFloats& { return b.P[i]; });
+  }
+  return m;
+}
+
+// The patches of a vector of groups that are leaves, as bits.
+template <typename Number>
+HWY_INLINE std::uint32_t leaves(const QueryPatches& patches, const GroupsOfVector<Number>& groups) {
+  std::uint32_t bits = 0;
+  for (std::size_t lane = 0; lane < kLanes<Number>; ++lane) {
+    const PatchGroup& group = groups[lane / kGroup<Number>];
+    const bool leaf = patches.block(group.block).triangle_blocks[group.first + lane % kGroup<Number>] > 0;
+    bits |= std::uint32_t{leaf} << lane;
+  }
+  return bits;
+}
 
 // Integrals over a patch, B axes, over rho g.
 template <typename Number>
@@ -28,15 +124,6 @@ struct PatchIntegrals {
   VectorOf<Number> force_error, torque_error, volume_error;
   VectorOf<Number>
       expected;  // estimate of the sum of the force errors once the patch is replaced by its children
-};
-
-template <typename Number>
-struct PatchMoments {
-  Vectors3<Number> center;
-  VectorOf<Number> radius, area, mu2, mu3, nu3;
-  std::array<VectorOf<Number>, 3> S;
-  std::array<VectorOf<Number>, 9> N;
-  std::array<VectorOf<Number>, 18> P;
 };
 
 // Integrals of a quadratic function over a patch: of the function times n, of the function times y_j n_k (of

@@ -30,63 +30,63 @@ inline constexpr std::size_t kLanes = hn::MaxLanes(LanesOf<Number>());
 
 // Lanes that come from one block: siblings, or the triangles of a block.
 template <typename Number>
-inline constexpr std::size_t kUnit = std::min<std::size_t>(kLanes<Number>, kSiblings);
+inline constexpr std::size_t kGroup = std::min<std::size_t>(kLanes<Number>, kSiblings);
 template <typename Number>
-inline constexpr std::size_t kUnitsPerVector = kLanes<Number> / kUnit<Number>;
+inline constexpr std::size_t kGroupsPerVector = kLanes<Number> / kGroup<Number>;
 template <typename Number>
-using UnitOf = hn::CappedTag<Number, kUnit<Number>>;
+using GroupTag = hn::CappedTag<Number, kGroup<Number>>;
 
 template <typename Number>
 HWY_INLINE VectorOf<Number> set(double number) {
   return hn::Set(LanesOf<Number>(), static_cast<Number>(number));
 }
 
-// A vector of kUnitsPerVector units, each made by unit(n).
-template <typename Number, typename MakeUnit>
-HWY_INLINE VectorOf<Number> combine_units(const MakeUnit& unit) {
+// A vector of kGroupsPerVector groups, each made by group(n).
+template <typename Number, typename MakeGroup>
+HWY_INLINE VectorOf<Number> combine_groups(const MakeGroup& group) {
 #if HWY_TARGET == HWY_SCALAR
-  return unit(0);
+  return group(0);
 #else
-  if constexpr (kUnitsPerVector<Number> == 1) {
-    return unit(0);
+  if constexpr (kGroupsPerVector<Number> == 1) {
+    return group(0);
   } else {
     const LanesOf<Number> d;
-    if constexpr (kUnitsPerVector<Number> == 2) {
-      return hn::Combine(d, unit(1), unit(0));
+    if constexpr (kGroupsPerVector<Number> == 2) {
+      return hn::Combine(d, group(1), group(0));
     } else {
       const hn::Half<LanesOf<Number>> half;
-      return hn::Combine(d, hn::Combine(half, unit(3), unit(2)), hn::Combine(half, unit(1), unit(0)));
+      return hn::Combine(d, hn::Combine(half, group(3), group(2)), hn::Combine(half, group(1), group(0)));
     }
   }
 #endif
 }
 
-// Reads kUnit numbers at each of kUnitsPerVector places.
+// Reads kGroup numbers at each of kGroupsPerVector places.
 template <typename Number, typename Place>
-HWY_INLINE VectorOf<Number> gather_units(const Place& place) {
-  return combine_units<Number>([&](std::size_t n) {
-    const UnitOf<Number> d;
+HWY_INLINE VectorOf<Number> gather_groups(const Place& place) {
+  return combine_groups<Number>([&](std::size_t n) {
+    const GroupTag<Number> d;
     const auto* const numbers = place(n);
     if constexpr (sizeof(*numbers) == sizeof(Number)) {
       return hn::LoadU(d, numbers);
     } else {
-      return hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, UnitOf<Number>>(), numbers));
+      return hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, GroupTag<Number>>(), numbers));
     }
   });
 }
 
-// Repeats the number at each of kUnitsPerVector places in all lanes of its unit.
+// Repeats the number at each of kGroupsPerVector places in all lanes of its group.
 template <typename Number, typename Place>
-HWY_INLINE VectorOf<Number> spread_units(const Place& place) {
-  return combine_units<Number>([&](std::size_t n) { return hn::Set(UnitOf<Number>(), *place(n)); });
+HWY_INLINE VectorOf<Number> spread_groups(const Place& place) {
+  return combine_groups<Number>([&](std::size_t n) { return hn::Set(GroupTag<Number>(), *place(n)); });
 }
 
-// The sum over the lanes of each unit, in all lanes of the unit.
+// The sum over the lanes of each group, in all lanes of the group.
 template <typename Number>
-HWY_INLINE VectorOf<Number> sums_of_units(VectorOf<Number> numbers) {
+HWY_INLINE VectorOf<Number> sums_of_groups(VectorOf<Number> numbers) {
   const LanesOf<Number> d;
-  if constexpr (kUnit<Number> == 4) numbers = numbers + hn::Reverse4(d, numbers);
-  if constexpr (kUnit<Number> >= 2) numbers = numbers + hn::Reverse2(d, numbers);
+  if constexpr (kGroup<Number> == 4) numbers = numbers + hn::Reverse4(d, numbers);
+  if constexpr (kGroup<Number> >= 2) numbers = numbers + hn::Reverse2(d, numbers);
   return numbers;
 }
 

@@ -20,12 +20,12 @@ namespace buoyancy {
 inline constexpr std::size_t kMaxPatches = 20'000;
 inline constexpr std::size_t kMaxCells = 2'048;   // of the surface, and of the volume, before a round
 inline constexpr std::size_t kMaxPlaces = 4'096;  // in the cells' grid, as well
-inline constexpr std::size_t kMaxUnits = 20'000;  // of a round; a result that is replaced may add some more
-// The number of components up to which these caps hold. Beyond, cells and units are as many fewer: the
-// expansion of a cell, which a unit may need, sums over all components.
+inline constexpr std::size_t kMaxGroups = 20'000;  // of a round; a result that is replaced may add some more
+// The number of components up to which these caps hold. Beyond, cells and groups are as many fewer: the
+// expansion of a cell, which a group may need, sums over all components.
 inline constexpr std::size_t kCappedComponents = 256;
 
-// No unit, cell or model.
+// No group, cell or model.
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 // The rounding error of an expansion, over the sum of its terms' absolute values and the unit roundoff.

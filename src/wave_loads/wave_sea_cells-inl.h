@@ -15,9 +15,9 @@
 
 #include <hwy/highway.h>
 
-#include "wave_loads/wave_cells-inl.h"
-#include "wave_loads/wave_coefficients-inl.h"
+#include "wave_loads/wave_field-inl.h"
 #include "wave_loads/wave_query.h"
+#include "wave_loads/wave_sums-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
@@ -70,9 +70,9 @@ class GridPlaces {
     return slot;
   }
 
-  // More than there can be places: kMaxPlaces before a round, and one for each unit of a round.
+  // More than there can be places: kMaxPlaces before a round, and one for each group of a round.
   static constexpr std::size_t kSlots = 32'768;
-  static_assert(kSlots > kMaxPlaces + kMaxUnits + 4'096);
+  static_assert(kSlots > kMaxPlaces + kMaxGroups + 4'096);
   struct Slot {
     std::uint32_t generation = 0;
     std::uint32_t number = 0;

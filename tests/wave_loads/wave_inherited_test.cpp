@@ -8,8 +8,7 @@
 
 #include "base/vec3.h"
 #include "tests/wave_loads/triangle_lanes-inl.h"
-#include "wave_loads/wave_inherited-inl.h"
-#include "wave_loads/wave_triangles-inl.h"
+#include "wave_loads/wave_clips-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
@@ -37,9 +36,9 @@ Vec3 from_lanes(const Vectors3<double>& v) {
   return {first_lane(v.x), first_lane(v.y), first_lane(v.z)};
 }
 
-KeptModelLanes<double> random_models(std::mt19937_64& generator) {
+CachedModelLanes<double> random_models(std::mt19937_64& generator) {
   std::normal_distribution<double> normal;
-  KeptModelLanes<double> kept;
+  CachedModelLanes<double> kept;
   for (auto& row : kept.rows) row = set<double>(normal(generator));
   return kept;
 }
@@ -69,7 +68,7 @@ TEST(InheritedModel, BoundsTheThirdMomentAboutItsOrigin) {
       const Vec3 place = random_vector(generator);
       Corners corners = random_triangle(generator);
       for (Vec3& corner : corners) corner = place + std::pow(10.0, -(i % 4) - i % 2) * corner;
-      const KeptModelLanes<double> kept = random_models(generator);
+      const CachedModelLanes<double> kept = random_models(generator);
       const Vec3 origin = from_lanes(kept.origin());
       // Towards the origin in every second case: then the surface is farther away than its centre.
       const Vec3 direction =
@@ -88,7 +87,7 @@ TEST(InheritedModel, IsTheSameFunction) {
   std::mt19937_64 generator(43);
   for (int i = 0; i < 100; ++i) {
     const Corners corners = random_triangle(generator);
-    const KeptModelLanes<double> kept = random_models(generator);
+    const CachedModelLanes<double> kept = random_models(generator);
     const Inherited<double> inherited = inherit<double>({}, moments_of(corners), kept);
     const Vec3 x = random_vector(generator);
     const Vec3 y = x - centroid_of(corners);

@@ -1,14 +1,16 @@
-// The results of a descent, and where they came from. Included once per instruction set.
-#if defined(BUOYANCY_WAVE_RESULTS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef BUOYANCY_WAVE_RESULTS_INL_H
-#undef BUOYANCY_WAVE_RESULTS_INL_H
+// The sum over all patches of a descent with the bounds on their errors, and which of them are refined
+// (docs/wave_mathematics.md, "Refinement"). Included once per instruction set.
+#if defined(BUOYANCY_WAVE_LOAD_SUM_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BUOYANCY_WAVE_LOAD_SUM_INL_H
+#undef BUOYANCY_WAVE_LOAD_SUM_INL_H
 #else
-#define BUOYANCY_WAVE_RESULTS_INL_H
+#define BUOYANCY_WAVE_LOAD_SUM_INL_H
 #endif
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,7 +19,6 @@
 #include <hwy/highway.h>
 
 #include "wave_loads/wave_integrals-inl.h"
-#include "wave_loads/wave_lanes-inl.h"
 #include "wave_loads/wave_load.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -29,20 +30,8 @@ namespace HWY_NAMESPACE {
 inline constexpr double kErrorOfChildren = 0.15;
 inline constexpr double kErrorOfClipping = 0.02;
 
-// What is evaluated together: kUnit patches of a block of the tree.
-struct Unit {
-  std::uint32_t block = 0;
-  std::uint32_t first = 0;  // lane of the block
-  bool dry = false;         // all of its patches are
-  std::uint32_t surface_cell = 0, volume_cell = 0;
-  std::uint32_t next = kNone;  // in the same cell
-};
-
-template <typename Number>
-using UnitsOfVector = std::array<Unit, kUnitsPerVector<Number>>;
-
 // The patches of a batch whose models are kept.
-struct KeptOfBatch {
+struct CachedOfBatch {
   std::uint32_t lanes = 0;   // bits
   std::uint32_t leaves = 0;  // those of them whose triangles can be clipped
   std::uint32_t models = kNone;
@@ -51,7 +40,7 @@ struct KeptOfBatch {
 // The integrals of all patches so far, batch by batch, and the bounds on their errors. Results are numbered
 // by their lanes.
 template <typename Number>
-class Results {
+class LoadSum {
  public:
   // max_lever: [m], L_r.
   void start(double max_lever) {
@@ -61,8 +50,8 @@ class Results {
   }
 
   // Returns the number of the first result.
-  std::size_t add(const UnitsOfVector<Number>& units, const PatchIntegrals<Number>& integrals,
-                  const KeptOfBatch& kept) {
+  std::size_t add(const GroupsOfVector<Number>& groups, const PatchIntegrals<Number>& integrals,
+                  const CachedOfBatch& kept) {
     const LanesOf<Number> d;
     const std::size_t first = batch_count_ * kLanes<Number>;
     if (batch_count_ == batches_.size()) {
@@ -71,15 +60,11 @@ class Results {
       expected_.resize(first + kLanes<Number>);
     }
     BatchResults& batch = batches_[batch_count_++];
-    batch.units = units;
+    batch.groups = groups;
     batch.kept = kept;
-    std::size_t row = 0;
-    const auto put = [&](const auto&... numbers)
-                         HWY_ATTR { (hn::Store(numbers, d, batch.rows[row++].data()), ...); };
-    put(integrals.force.x, integrals.force.y, integrals.force.z);
-    put(integrals.torque.x, integrals.torque.y, integrals.torque.z);
-    put(integrals.moment.x, integrals.moment.y, integrals.moment.z);
-    put(integrals.volume, integrals.force_error, integrals.torque_error, integrals.volume_error);
+    const std::array<VectorOf<Number>, kRows> rows = rows_of(integrals);
+#pragma GCC unroll 16
+    for (std::size_t row = 0; row < kRows; ++row) hn::Store(rows[row], d, batch.rows[row].data());
     const VectorOf<Number> error =
         hn::Max(integrals.force_error, set<Number>(per_lever_) * integrals.torque_error);
     // As much less than the error as the force's is.
@@ -94,7 +79,7 @@ class Results {
     return first;
   }
 
-  // Adds kRows numbers to a result, in the order of add().
+  // Adds kRows numbers to a result, in the order of rows_of().
   void add_to(std::size_t result, const Number* numbers, std::size_t stride) {
     auto& rows = batches_[result / kLanes<Number>].rows;
     for (std::size_t row = 0; row < kRows; ++row) rows[row][result % kLanes<Number>] += numbers[row * stride];
@@ -142,15 +127,15 @@ class Results {
   double total() const { return total_; }      // of the errors, with those that are settled
   double settled() const { return settled_; }  // of those that are settled
   // The models that were kept of the patch; kNone if there are none.
-  std::uint32_t kept_models(std::size_t result) const {
-    const KeptOfBatch& of_batch = batches_[result / kLanes<Number>].kept;
+  std::uint32_t cached_models(std::size_t result) const {
+    const CachedOfBatch& of_batch = batches_[result / kLanes<Number>].kept;
     return (of_batch.lanes >> (result % kLanes<Number>)&1U) != 0 ? of_batch.models : kNone;
   }
-  const Unit& unit_of(std::size_t result) const {
-    return batches_[result / kLanes<Number>].units[result % kLanes<Number> / kUnit<Number>];
+  const PatchGroup& group_of(std::size_t result) const {
+    return batches_[result / kLanes<Number>].groups[result % kLanes<Number> / kGroup<Number>];
   }
 
-  WaveLoad sum() const {
+  WaveLoad load() const {
     const LanesOf<double> d;
     std::array<VectorOf<double>, kRows> sums;
     for (auto& of_row : sums) of_row = hn::Zero(d);
@@ -170,26 +155,40 @@ class Results {
     std::array<double, kRows> total;
     for (std::size_t row = 0; row < kRows; ++row) total[row] = hn::GetLane(hn::SumOfLanes(d, sums[row]));
     WaveLoad load;
-    load.force = {total[0], total[1], total[2]};
-    load.torque = {total[3], total[4], total[5]};
-    load.moment = {total[6], total[7], total[8]};
-    load.volume = total[9];
+    const auto vector = [&](std::size_t row) { return Vec3(total[row], total[row + 1], total[row + 2]); };
+    load.force = vector(kForce);
+    load.torque = vector(kTorque);
+    load.moment = vector(kMoment);
+    load.volume = total[kVolume];
     load.force_bound = total[kForceError];
     load.torque_bound = total[kTorqueError];
     load.volume_bound = total[kVolumeError];
     return load;
   }
 
-  static constexpr std::size_t kRows = 13;
+  // The places of what is summed up; vectors take three.
+  enum Row : std::size_t {
+    kForce = 0,
+    kTorque = kForce + 3,
+    kMoment = kTorque + 3,
+    kVolume = kMoment + 3,
+    kForceError,
+    kTorqueError,
+    kVolumeError,
+    kRows
+  };
+  static HWY_INLINE std::array<VectorOf<Number>, kRows> rows_of(const PatchIntegrals<Number>& integrals) {
+    return {integrals.force.x,     integrals.force.y,  integrals.force.z,     integrals.torque.x,
+            integrals.torque.y,    integrals.torque.z, integrals.moment.x,    integrals.moment.y,
+            integrals.moment.z,    integrals.volume,   integrals.force_error, integrals.torque_error,
+            integrals.volume_error};
+  }
 
  private:
-  static constexpr std::size_t kForceError = 10;
-  static constexpr std::size_t kTorqueError = 11;
-  static constexpr std::size_t kVolumeError = 12;
   struct BatchResults {
     alignas(64) std::array<std::array<Number, kLanes<Number>>, kRows> rows;
-    UnitsOfVector<Number> units;
-    KeptOfBatch kept;
+    GroupsOfVector<Number> groups;
+    CachedOfBatch kept;
   };
 
   std::size_t count() const { return batch_count_ * kLanes<Number>; }
@@ -202,8 +201,56 @@ class Results {
   double total_ = 0.0, settled_ = 0.0;
 };
 
+// A child's error is about the sum of its siblings' and its own over this.
+inline constexpr double kChildrenAbove = 4.0;
+
+// The sum of the errors that can be expected once all above `limit` are refined as often as needed. Where
+// patches are small the error of each falls with the third to fifth power of their size, and the sum over
+// them with the second or third: about as the square root of each one's. A prediction that is too low costs
+// another round, of few patches; one that is too high refines all of them too far, which costs more. roots:
+// of the expected errors.
+template <typename Number>
+HWY_INLINE double predicted(std::span<const Number> errors, std::span<const Number> expected,
+                            std::span<const Number> roots, Number limit) {
+  const LanesOf<Number> d;
+  constexpr double kShare = 0.25;
+  const VectorOf<Number> root_of_limit =
+      set<Number>(kShare) * hn::Sqrt(hn::Set(d, limit) * set<Number>(kChildrenAbove));
+  VectorOf<Number> sum = hn::Zero(d);
+  for (std::size_t n = 0; n < errors.size(); n += kLanes<Number>) {
+    const VectorOf<Number> error = hn::LoadU(d, &errors[n]);
+    const VectorOf<Number> left =
+        hn::Min(hn::LoadU(d, &expected[n]), hn::LoadU(d, &roots[n]) * root_of_limit);
+    sum = sum + hn::IfThenElse(hn::Gt(error, hn::Set(d, limit)), left, error);
+  }
+  return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, sum)));
+}
+
+// The error above which patches are refined, so that the sum of the errors can be expected to fit the budget.
+// roots: room for as many numbers.
+template <typename Number>
+double refinement_limit(std::span<const Number> errors, std::span<const Number> expected,
+                        std::vector<Number>& roots, double budget) {
+  const LanesOf<Number> d;
+  if (roots.size() < errors.size()) roots.resize(errors.size());
+  VectorOf<Number> most = hn::Zero(d);
+  for (std::size_t n = 0; n < errors.size(); n += kLanes<Number>) {
+    most = hn::Max(hn::LoadU(d, &errors[n]), most);  // `most` where an error is not a number
+    hn::StoreU(hn::Sqrt(hn::LoadU(d, &expected[n])), d, &roots[n]);
+  }
+  const Number largest = hn::GetLane(hn::MaxOfLanes(d, most));
+  Number low = static_cast<Number>(1e-12) * largest;
+  Number high = static_cast<Number>(0.999) * largest;
+  constexpr double kMargin = 0.95;
+  for (int step = 0; step < 12; ++step) {
+    const Number middle = std::sqrt(low * high);
+    (predicted<Number>(errors, expected, roots, middle) <= kMargin * budget ? low : high) = middle;
+  }
+  return static_cast<double>(low);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace buoyancy
 HWY_AFTER_NAMESPACE();
 
-#endif  // BUOYANCY_WAVE_RESULTS_INL_H
+#endif  // BUOYANCY_WAVE_LOAD_SUM_INL_H
