@@ -17,7 +17,7 @@
 
 #include "client/lcm_request_channel.h"
 #include "client/retry_policy.h"
-#include "messages/wire.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/timeouts.h"
 #include "transport/lcm_connection.h"
 
@@ -114,13 +114,6 @@ inline BodiesLoads loads_for(const WrenchRequest& request, double drag) {
   body.body_id = request.bodies.back().body_id;
   body.drag_force = {0, 0, drag};
   return loads;
-}
-
-template <typename Message>
-std::vector<std::uint8_t> encoded(const Message& message) {
-  std::vector<std::uint8_t> bytes;
-  encode(message, bytes);
-  return bytes;
 }
 
 }  // namespace buoyancy

@@ -8,6 +8,7 @@
 
 #include "client/client.h"
 #include "tests/e2e/closed_loop.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/contains.h"
 #include "tests/support/running_program.h"
 
@@ -82,9 +83,7 @@ class Share {
 };
 
 std::vector<std::uint8_t> bytes_of(const std::vector<BodyWrench>& wrenches) {
-  std::vector<std::uint8_t> bytes;
-  encode(WrenchResponse{.id = {}, .bodies = wrenches}, bytes);
-  return bytes;
+  return encoded(WrenchResponse{.id = {}, .bodies = wrenches});
 }
 
 TEST(ScaleOut, MatchesOneServiceBitForBit) {

@@ -68,9 +68,7 @@ inline BodyState upright(std::int32_t id, double height) {
 }
 
 inline ByteVector request_bytes(const RequestId& id, std::vector<BodyState> bodies, double lead_time = 0.0) {
-  ByteVector bytes;
-  encode(WrenchRequest{.id = id, .lead_time = lead_time, .bodies = std::move(bodies)}, bytes);
-  return bytes;
+  return encoded(WrenchRequest{.id = id, .lead_time = lead_time, .bodies = std::move(bodies)});
 }
 
 }  // namespace buoyancy

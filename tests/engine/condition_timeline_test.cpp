@@ -31,7 +31,7 @@ const Scene& boxes() {
 
 Expected<void> receive(ConditionTimeline& timeline, const ConditionChange& change,
                        const Scene& scene = boxes()) {
-  return timeline.receive(encoded_condition(change), scene);
+  return timeline.receive(encoded(change), scene);
 }
 
 // Of body 1, which is the first with compartments or tanks; nullopt: unknown.
@@ -197,7 +197,7 @@ TEST(ConditionTimeline, IsKnownAgainAfterAnyUsableChangeIfNoneWasNamed) {
 
 TEST(ConditionTimeline, RejectsWhatConcernsNoneOfItsBodies) {
   ConditionTimeline timeline(boxes());
-  std::vector<std::uint8_t> cut = encoded_condition(flooded(0, 0, 1.0));
+  std::vector<std::uint8_t> cut = encoded(flooded(0, 0, 1.0));
   cut.pop_back();
   const Expected<void> truncated = timeline.receive(cut, boxes());
   ASSERT_FALSE(truncated);

@@ -32,7 +32,7 @@ ByteVector request(std::int64_t utime, std::int64_t seq, const std::vector<std::
 }
 
 Expected<void> receive(RequestHandler& handler, const ConditionChange& change) {
-  return handler.receive_condition(encoded_condition(change));
+  return handler.receive_condition(encoded(change));
 }
 
 TEST(RequestHandlerWithConditions, RespondsAsForTheSceneWithThisCondition) {
@@ -178,7 +178,7 @@ TEST(RequestHandlerWithConditions, DoesNotAllocateAfterWarmUp) {
   for (std::int64_t i = 0; i < kSteps; ++i) {
     const double share = 0.5 + 0.25 * static_cast<double>(i % 2);
     requests.push_back(request(i, i));
-    conditions.push_back(encoded_condition(i % 3 == 0 ? filled(i, 0, share) : flooded(i, 0, share)));
+    conditions.push_back(encoded(i % 3 == 0 ? filled(i, 0, share) : flooded(i, 0, share)));
   }
   const auto run = [&] {
     for (std::size_t i = 0; i < requests.size(); ++i) {

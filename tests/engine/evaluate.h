@@ -1,29 +1,25 @@
 // Evaluates core types with a BodyEvaluator, which reads and writes messages in place.
 #pragma once
 
-#include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "engine/body_evaluator.h"
 #include "messages/wire_views.h"
+#include "tests/support/byte_vector.h"
 
 namespace buoyancy {
 
 // Replaces wrenches by one wrench per state of the request, in water at rest.
 inline void evaluate_all(BodyEvaluator& evaluator, const WrenchRequest& request,
                          std::vector<BodyWrench>& wrenches, ServiceCounters& counters) {
-  std::vector<std::uint8_t> request_bytes;
-  std::vector<std::uint8_t> response_bytes;
-  encode(request, request_bytes);
+  const ByteVector request_bytes = encoded(request);
+  ByteVector response_bytes;
   const RequestView view = RequestView::of(request_bytes).value();
   ResponseWriter writer(view.id(), view.size(), response_bytes);
   evaluator.evaluate(view, {.first = 0, .count = view.size(), .listed = {}},
                      {&evaluator.scene().water(), nullptr},
                      {.response = writer, .loads = {}, .load_places = {}}, counters);
-  WrenchResponse response;
-  if (decode(response_bytes, response)) throw std::logic_error("an invalid response");
-  wrenches = std::move(response.bodies);
+  wrenches = decoded<WrenchResponse>(response_bytes).bodies;
 }
 
 // Evaluates one body on its own, with a BodyEvaluator that has no cached results.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "messages/status.h"
+#include "tests/support/byte_vector.h"
 
 namespace buoyancy {
 namespace {
@@ -23,25 +24,19 @@ ByteVector request_of(std::size_t bodies) {
   body.body_id = 1;
   body.quaternion_wxyz = {1, 0, 0, 0};
   request.bodies.assign(bodies, body);
-  ByteVector bytes;
-  encode(request, bytes);
-  return bytes;
+  return encoded(request);
 }
 
 ByteVector response_of(std::size_t bodies) {
   WrenchResponse response{.id = {.utime = 1'000'000, .session_id = 77, .seq = 5}, .bodies = {}};
   response.bodies.resize(bodies);
-  ByteVector bytes;
-  encode(response, bytes);
-  return bytes;
+  return encoded(response);
 }
 
 ByteVector status() {
   ServiceStatus status;
   status.version = "0.1.0";
-  ByteVector bytes;
-  encode(status, bytes);
-  return bytes;
+  return encoded(status);
 }
 
 ByteVector first(ByteVector bytes, std::size_t size) {

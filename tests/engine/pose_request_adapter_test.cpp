@@ -29,9 +29,7 @@ WrenchRequest decoded_request(PoseRequestAdapter& poses, std::size_t channel,
                               const std::vector<std::uint8_t>& message) {
   const auto bytes = poses.make_request(channel, message);
   if (!bytes) throw std::runtime_error(to_string(bytes.error()));
-  WrenchRequest request;
-  EXPECT_FALSE(decode(*bytes, request));
-  return request;
+  return decoded<WrenchRequest>(*bytes);
 }
 
 TEST(PoseRequestAdapter, UsesOneSessionPerChannel) {

@@ -1,8 +1,6 @@
 // What a request handler publishes for a request.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include "engine/request_handler.h"
 #include "tests/support/byte_vector.h"
 
@@ -23,14 +21,6 @@ inline Reply reply_of(const RequestHandler& handler) {
 inline Reply reply_to(RequestHandler& handler, Bytes request) {
   handler.handle(request);
   return reply_of(handler);
-}
-
-// Message: WrenchResponse, BodiesHydrostatics or BodiesLoads.
-template <typename Message>
-Message decoded(Bytes bytes) {
-  Message message;
-  EXPECT_FALSE(decode(bytes, message).has_value());
-  return message;
 }
 
 inline WrenchResponse response_of(const Reply& reply) {

@@ -15,9 +15,7 @@ inline ByteVector sea_bytes(const std::string& water, std::int64_t utime) {
   const SceneDescription described = parse_water("[water]\n" + water, "sea", {}).value();
   SeaState state = to_sea_state(Sea::make(described.sea, described.water).value(), 5);
   state.utime = utime;
-  ByteVector bytes;
-  encode(state, bytes);
-  return bytes;
+  return encoded(state);
 }
 
 }  // namespace buoyancy

@@ -11,6 +11,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "tests/engine/sea_bytes.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/scene_of.h"
 
 namespace buoyancy {
@@ -35,8 +36,7 @@ ByteVector sea(std::int64_t utime, int height) {
 std::optional<std::pair<std::int64_t, int>> at(const SeaTimeline& timeline, std::int64_t utime) {
   const std::shared_ptr<const SeaPeriod>* const period = timeline.at(utime);
   if (period == nullptr) return std::nullopt;
-  SeaState state;
-  EXPECT_FALSE(decode((*period)->message, state));
+  const auto state = decoded<SeaState>((*period)->message);
   const int height = static_cast<int>(std::lround(2.0 * state.amplitude.at(0)));
   EXPECT_EQ((*period)->sea == nullptr, height == 0) << "a sea without waves is water at rest";
   return std::pair{(*period)->from_utime, height};

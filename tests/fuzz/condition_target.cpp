@@ -40,7 +40,7 @@ ByteVector next_packet(FuzzBytes& bytes) {
   const unsigned options = bytes.byte();
   ByteVector packet = copy_of(bytes.take(kPacketSize));
   if ((options & 1U) != 0) {
-    const ByteVector valid = encoded_condition({});
+    const ByteVector valid = encoded(ConditionChange{});
     std::copy_n(valid.begin(), std::min(packet.size(), sizeof(std::int64_t)), packet.begin());
   }
   ConditionChange change;
@@ -48,7 +48,7 @@ ByteVector next_packet(FuzzBytes& bytes) {
     require(change == ConditionChange{}, "a message that does not decode changes nothing");
     return packet;
   }
-  require(encoded_condition(change) == packet, "a decoded message encodes to the same bytes");
+  require(encoded(change) == packet, "a decoded message encodes to the same bytes");
   if ((options & 6U) != 0) change.body_id = static_cast<std::int32_t>((options >> 1U) & 3U);
   if ((options & 8U) != 0) {
     change.kind = static_cast<ConditionKind>(static_cast<std::int32_t>(change.kind) & 1);
@@ -59,7 +59,7 @@ ByteVector next_packet(FuzzBytes& bytes) {
     change.liquid_volume = folded(change.liquid_volume);
   }
   if ((options & 32U) != 0) change.utime &= 0xff;
-  return encoded_condition(change);
+  return encoded(change);
 }
 
 void receive(const ByteVector& packet, RequestHandler& handler) {
@@ -86,9 +86,7 @@ Outputs respond(RequestHandler& handler, std::int64_t utime) {
     state.position = {0.0, 0.0, 0.25};
     state.quaternion_wxyz = {0.96, 0.0, 0.28, 0.0};
   }
-  ByteVector bytes;
-  encode(request, bytes);
-  Outputs outputs{copy_of(handler.handle(bytes)), copy_of(handler.last_hydrostatics()),
+  Outputs outputs{copy_of(handler.handle(encoded(request))), copy_of(handler.last_hydrostatics()),
                   copy_of(handler.last_loads())};
   // The responses of two handlers are the same but for this number.
   for (ByteVector* message : {&outputs.wrenches, &outputs.hydrostatics, &outputs.loads}) {

@@ -64,7 +64,7 @@ TEST(ConditionChange, RejectsOtherLengthsAndFingerprints) {
 }
 
 TEST(ConditionChange, DoesNotAllocateAfterWarmUp) {
-  ByteVector bytes = encoded({});
+  ByteVector bytes = encoded(ConditionChange{});
   ConditionChange change;
   const AllocationCount allocations;
   for (int i = 0; i < 10; ++i) {

@@ -121,12 +121,6 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   return encoded_by_lcm(message);
 }
 
-ByteVector encoded(const ServiceStatus& status) {
-  ByteVector bytes;
-  encode(status, bytes);
-  return bytes;
-}
-
 ByteVector with_version(const std::string& version, const std::string& scene = "",
                         const std::string& injected_faults = "") {
   ServiceStatus status;

@@ -23,13 +23,6 @@
 namespace buoyancy {
 namespace {
 
-template <typename Message>
-ByteVector encoded(const Message& message) {
-  ByteVector bytes;
-  encode(message, bytes);
-  return bytes;
-}
-
 template <std::size_t kSize>
 void copy(const std::array<double, kSize>& from, double (&to)[kSize]) {
   std::copy(from.begin(), from.end(), to);

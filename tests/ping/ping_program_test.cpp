@@ -63,7 +63,7 @@ class ChangedResponses {
         handler_(scene_, {.threads = 1}),
         change_(std::move(change)),
         service_([this](const WrenchRequest& request) {
-          return change_(copy_of_bytes(handler_.handle(encoded(request))), count_++);
+          return change_(copy_of(handler_.handle(encoded(request))), count_++);
         }) {}
 
   int requests() const { return service_.requests(); }

@@ -8,22 +8,17 @@
 #include "client/ping/ping_poses.h"
 #include "client/ping/response_checks.h"
 #include "engine/request_handler.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/scene_of.h"
 
 namespace buoyancy::ping {
 
-inline ByteVector copy_of_bytes(Bytes bytes) {
-  return {bytes.begin(), bytes.end()};
-}
-
 // What a service with this scene responds.
 inline ExpectedReply reply_of(RequestHandler& handler, const RequestId& id,
                               const std::vector<BodyState>& states) {
-  std::vector<std::uint8_t> request;
-  encode(BorrowedRequest(id, 0.0, states), request);
-  return {.wrenches = copy_of_bytes(handler.handle(request)),
-          .hydrostatics = copy_of_bytes(handler.last_hydrostatics()),
-          .loads = copy_of_bytes(handler.last_loads())};
+  return {.wrenches = copy_of(handler.handle(encoded(BorrowedRequest(id, 0.0, states)))),
+          .hydrostatics = copy_of(handler.last_hydrostatics()),
+          .loads = copy_of(handler.last_loads())};
 }
 
 inline Reply received(const ExpectedReply& reply) {

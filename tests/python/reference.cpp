@@ -20,8 +20,8 @@
 
 #include "engine/request_handler.h"
 #include "geometry/shapes.h"
-#include "recording/event_log.h"
 #include "tests/query/pose_table.h"
+#include "tests/support/recorded_log.h"
 #include "tests/support/scene_of.h"
 
 namespace buoyancy {
@@ -91,16 +91,9 @@ void append(const BodyWrench& wrench, std::vector<double>& rows) {
   rows.push_back(wrench.torque_error_bound);
 }
 
-void append_event(std::string_view channel, Bytes message, std::int64_t timestamp,
-                  std::vector<std::uint8_t>& log) {
-  std::vector<std::uint8_t> event;
-  encode_event(0, timestamp, channel, message, event);
-  log.insert(log.end(), event.begin(), event.end());
-}
-
 // Requests the poses of each time together, and appends the messages to a log.
 void write_wrenches(const std::filesystem::path& directory, const std::string& water, const Scene& scene,
-                    const PoseTable& poses, std::int32_t body_id, std::vector<std::uint8_t>& log) {
+                    const PoseTable& poses, std::int32_t body_id, RecordedLog& log) {
   RequestHandler handler(scene);
   std::vector<double> rows;
   std::vector<double> loads_rows;
@@ -108,17 +101,13 @@ void write_wrenches(const std::filesystem::path& directory, const std::string& w
     WrenchRequest request{{poses.utimes[begin], 1, static_cast<std::int64_t>(begin)}, 0.0, {}};
     for (std::size_t i = begin; i < begin + kPosesPerTime; ++i)
       request.bodies.push_back(poses.state(i, body_id));
-    std::vector<std::uint8_t> bytes;
-    encode(request, bytes);
-    WrenchResponse response;
+    const ByteVector bytes = encoded(request);
     const Bytes responded = handler.handle(bytes);
-    append_event(kStatesChannel, bytes, request.id.utime, log);
-    append_event(kWrenchesChannel, responded, request.id.utime, log);
-    if (decode(responded, response)) throw std::runtime_error("the handler rejects a request");
-    for (const BodyWrench& wrench : response.bodies) append(wrench, rows);
-    BodiesLoads loads;
-    if (handler.last_loads().empty() || decode(handler.last_loads(), loads)) continue;
-    for (const BodyLoads& body : loads.bodies) {
+    log.add(request.id.utime, kStatesChannel, bytes);
+    log.add(request.id.utime, kWrenchesChannel, responded);
+    for (const BodyWrench& wrench : decoded<WrenchResponse>(responded).bodies) append(wrench, rows);
+    if (handler.last_loads().empty()) continue;
+    for (const BodyLoads& body : decoded<BodiesLoads>(handler.last_loads()).bodies) {
       append(body.drag_force, loads_rows);
       for (const auto& row : body.added_mass) append(row, loads_rows);
     }
@@ -158,9 +147,9 @@ void write_all(const std::filesystem::path& directory) {
     const std::string text = scene_text(toml);
     std::ofstream(directory / (name + ".toml")) << text;
     const Scene scene = scene_of(text);
-    std::vector<std::uint8_t> log;
+    RecordedLog log;
     for (const Body& body : scene.bodies()) write_wrenches(directory, name, scene, poses, body.id, log);
-    write(directory / (name + ".lcmlog"), log);
+    write(directory / (name + ".lcmlog"), std::vector<char>(log.text().begin(), log.text().end()));
   }
 }
 

@@ -50,21 +50,15 @@ struct Answer {
 // Asks about every pose in a request of its own, so that nothing of one is reused for the next.
 Answer ask(RequestHandler& handler, const BodyState& state, std::int64_t utime) {
   static std::int64_t seq = 0;
-  WrenchRequest request{{utime, 1, ++seq}, 0.0, {state}};
-  ByteVector bytes;
-  encode(request, bytes);
   Answer answer;
-  EXPECT_FALSE(decode(handler.handle(bytes), answer.response));
-  if (!handler.last_loads().empty()) {
-    EXPECT_FALSE(decode(handler.last_loads(), answer.loads));
-  }
+  answer.response =
+      decoded<WrenchResponse>(handler.handle(encoded(WrenchRequest{{utime, 1, ++seq}, 0.0, {state}})));
+  if (!handler.last_loads().empty()) answer.loads = decoded<BodiesLoads>(handler.last_loads());
   return answer;
 }
 
-ByteVector encoded(const BodyLoads& loads) {
-  ByteVector bytes;
-  encode(BodiesLoads{.id = {}, .bodies = {loads}}, bytes);
-  return bytes;
+ByteVector bytes_of(const BodyLoads& loads) {
+  return encoded(BodiesLoads{.id = {}, .bodies = {loads}});
 }
 
 TEST(PoseEvaluation, HasTheBitsOfTheServicesResponses) {
@@ -99,7 +93,7 @@ TEST(PoseEvaluation, GivesTheLoadsOfABody) {
       for (std::size_t i = 0; i < poses.size(); ++i) {
         const Answer answer = ask(handler, poses.state(i, id), kNow);
         ASSERT_TRUE(equals(wrenches, i, answer.response.bodies[0])) << i;
-        ASSERT_EQ(encoded(loads[i]), encoded(answer.loads.bodies.at(0))) << i;
+        ASSERT_EQ(bytes_of(loads[i]), bytes_of(answer.loads.bodies.at(0))) << i;
       }
     }
   }

@@ -11,6 +11,7 @@
 
 #include "messages/wire.h"
 #include "messages/wire_layout.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/temp_dir.h"
 
 namespace buoyancy {
@@ -24,9 +25,7 @@ std::vector<std::uint8_t> request(std::int64_t seq, std::size_t bodies = 1) {
   request.id = {1'000 + seq, 7, seq};
   request.bodies.resize(bodies);
   for (std::size_t i = 0; i < bodies; ++i) request.bodies[i].body_id = static_cast<std::int32_t>(i);
-  std::vector<std::uint8_t> bytes;
-  encode(request, bytes);
-  return bytes;
+  return encoded(request);
 }
 
 // A log of encoded events and the offset of each.

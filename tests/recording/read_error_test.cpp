@@ -13,6 +13,7 @@
 
 #include "recording/event_log.h"
 #include "recording/state_csv.h"
+#include "tests/support/recorded_log.h"
 #include "tests/support/temp_dir.h"
 
 namespace {
@@ -37,14 +38,10 @@ constexpr std::int64_t kEvents = 300;
 constexpr std::size_t kDataBytes = 600'000;  // three events in two windows of the reader
 
 std::string write_log(const TempDir& directory) {
-  std::string log;
-  std::vector<std::uint8_t> event;
+  RecordedLog log;
   const std::vector<std::uint8_t> data(kDataBytes, 7);
-  for (std::int64_t i = 0; i < kEvents; ++i) {
-    encode_event(i, i, "A", data, event);
-    log.append(event.begin(), event.end());
-  }
-  return directory.write("events.lcmlog", log);
+  for (std::int64_t i = 0; i < kEvents; ++i) log.add(i, "A", data);
+  return directory.write("events.lcmlog", log.text());
 }
 
 std::string write_rows(const TempDir& directory) {

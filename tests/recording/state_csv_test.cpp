@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/support/byte_vector.h"
 #include "tests/support/temp_dir.h"
 
 namespace buoyancy {
@@ -34,8 +35,7 @@ CsvContents read_all(const std::string& contents) {
       read.corrupt_sections.push_back(corrupt->description);
     } else {
       const auto& recorded = std::get<RecordedEvent>(item);
-      WrenchRequest request;
-      EXPECT_FALSE(decode(recorded.bytes, request));
+      const auto request = decoded<WrenchRequest>(recorded.bytes);
       EXPECT_EQ(recorded.timestamp, request.id.utime);
       read.requests.push_back(request);
     }

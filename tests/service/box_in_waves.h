@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "messages/sea_state.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/scene_of.h"
 
 namespace buoyancy {
@@ -19,12 +19,6 @@ inline std::string box_in(const std::string& water) {
 // The sea that a service would publish.
 inline SeaState sea_of(const std::string& water, std::int64_t instance_id) {
   return to_sea_state(*scene_of(box_in(water)).sea(), instance_id);
-}
-
-inline std::vector<std::uint8_t> encoded(const SeaState& sea) {
-  std::vector<std::uint8_t> bytes;
-  encode(sea, bytes);
-  return bytes;
 }
 
 }  // namespace buoyancy

@@ -24,8 +24,8 @@ shape = { type = "rock", frequency = 20 }
 tolerance = 1e-6
 )";
 
-RawStates many_bodies(std::int32_t body, std::size_t bodies, std::int64_t session_id) {
-  RawStates states = one_body(session_id, 1, 0.0);
+WrenchRequest many_bodies(std::int32_t body, std::size_t bodies, std::int64_t session_id) {
+  WrenchRequest states = one_body(session_id, 1, 0.0);
   states.bodies[0].body_id = body;
   states.bodies.resize(bodies, states.bodies[0]);
   for (std::size_t i = 0; i < bodies; ++i) states.bodies[i].position[2] = 1e-5 * static_cast<double>(i);
@@ -40,7 +40,7 @@ TEST(Budgets, AnswersOtherSessionsDuringALongRequest) {
       socket, [](const ServiceStatus& status) { return status.counters.requests_sliced == 1; }));
   for (std::int64_t seq = 1; seq <= 20; ++seq) {
     send_request(socket, one_body(2, seq, 0.0));
-    EXPECT_EQ(receive(socket).session_id, 2);
+    EXPECT_EQ(receive(socket).id.session_id, 2);
   }
   service.child().send_signal(SIGTERM);
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0) << service.log();
@@ -50,18 +50,18 @@ TEST(Budgets, AnswersOtherSessionsDuringALongRequest) {
 TEST(Budgets, AnswersEveryRequestOfASessionInOrder) {
   const RunningService service({"--threads", "1"}, kWavyScene);
   RawLcmSocket socket;
-  RawStates states = many_bodies(2, 300, 1);
-  for (; states.seq <= 3; ++states.seq) send_request(socket, states);
-  for (std::int64_t seq = 1; seq <= 3; ++seq) EXPECT_EQ(receive(socket).seq, seq);
+  WrenchRequest states = many_bodies(2, 300, 1);
+  for (; states.id.seq <= 3; ++states.id.seq) send_request(socket, states);
+  for (std::int64_t seq = 1; seq <= 3; ++seq) EXPECT_EQ(receive(socket).id.seq, seq);
 }
 
 TEST(Budgets, AnswersTheNewestRequestOfALongOneInModeLatest) {
   const RunningService service({"--threads", "1", "--mode", "latest"}, kWavyScene);
   RawLcmSocket socket;
-  RawStates states = many_bodies(2, 300, 1);
-  for (; states.seq <= 3; ++states.seq) send_request(socket, states);
+  WrenchRequest states = many_bodies(2, 300, 1);
+  for (; states.id.seq <= 3; ++states.id.seq) send_request(socket, states);
   std::int64_t newest = 0;
-  while (newest != 3) newest = receive(socket).seq;
+  while (newest != 3) newest = receive(socket).id.seq;
 }
 
 TEST(Budgets, RejectsARequestThatRepeatsABodyTooOften) {
@@ -80,7 +80,7 @@ TEST(Budgets, LogsManySessionsInFewLines) {
   RawLcmSocket socket;
   for (std::int64_t session = 1; session <= kSessions; ++session) {
     send_request(socket, one_body(session, 1, 0.0));
-    EXPECT_EQ(receive(socket).session_id, session);
+    EXPECT_EQ(receive(socket).id.session_id, session);
   }
   ASSERT_TRUE(service.child().wait_for_text("sessions started", kWaitTimeout)) << service.log();
   service.child().send_signal(SIGTERM);
@@ -106,7 +106,7 @@ TEST(Budgets, OutOfMemoryCostsTheRequest) {
     return status.counters.rejected_memory + status.fragments_dropped > 0;
   })) << service.log();
   send_request(socket, one_body(1, 2, 0.0));
-  while (receive(socket).seq != 2) {
+  while (receive(socket).id.seq != 2) {
   }
   service.child().send_signal(SIGTERM);
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0) << service.log();

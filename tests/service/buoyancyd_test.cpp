@@ -128,7 +128,7 @@ TEST(Buoyancyd, LogsLostRouteAndRecoversWhenItReturns) {
       0);
   RawLcmSocket socket;
   send_request(socket, one_body(1, 1, 0.0));
-  EXPECT_EQ(receive(socket).seq, 1);
+  EXPECT_EQ(receive(socket).id.seq, 1);
   EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) { return status.send_failures > 0; }));
 }
 
@@ -162,7 +162,7 @@ TEST_P(LogLevel, LogsItsOwnAndMoreSevereLines) {
   ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kWaitTimeout));  // ready, whatever it logs
   socket.send("BUOYANCY_STATES", {1, 2, 3});                     // causes a warning
   send_request(socket, one_body(7, 3, 0.0));
-  EXPECT_EQ(receive(socket).seq, 3);
+  EXPECT_EQ(receive(socket).id.seq, 3);
   directory.write("scene.toml", "nothing");
   child.send_signal(SIGHUP);
   ASSERT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
@@ -231,18 +231,18 @@ TEST(Buoyancyd, PublishesConfigurationAndUptimeInItsStatus) {
 TEST(Buoyancyd, PublishesLongestQueueWaitOfLastSecond) {
   const RunningService service;
   RawLcmSocket socket;
-  RawStates states = one_body(1, 0, 0.0);
+  WrenchRequest states = one_body(1, 0, 0.0);
   states.bodies.resize(20, states.bodies[0]);  // a burst fits into the receive buffer that every user gets
   // The last request of a burst waits for those before it. There are several bursts, since the test may be
   // suspended during one.
   bool waited = false;
   for (int burst = 0; burst < 20 && !waited; ++burst) {
     for (int request = 0; request < 40; ++request) {
-      states.seq++;
-      for (RawState& body : states.bodies) body.position[2] = 0.001 * static_cast<double>(states.seq);
+      states.id.seq++;
+      for (BodyState& body : states.bodies) body.position[2] = 0.001 * static_cast<double>(states.id.seq);
       send_request(socket, states);
     }
-    const std::int64_t requests = states.seq;
+    const std::int64_t requests = states.id.seq;
     EXPECT_TRUE(wait_for_status(socket, [&waited, requests](const ServiceStatus& status) {
       waited = waited || status.queue_wait > 3 * status.latency.p50;
       return status.counters.requests == requests;

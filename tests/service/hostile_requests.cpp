@@ -143,12 +143,12 @@ struct Attack {
 };
 
 RawBytes request_of(std::int32_t body, std::size_t bodies, std::int64_t session, std::int64_t seq) {
-  RawStates states = one_body(session, seq, 0.1);
+  WrenchRequest states = one_body(session, seq, 0.1);
   states.bodies[0].body_id = body;
   states.bodies.resize(bodies, states.bodies[0]);
   for (std::size_t i = 0; i < bodies; ++i)
     states.bodies[i].position[2] = 1e-4 * static_cast<double>(i % 1'000);
-  return encode_states(states);
+  return encoded(states);
 }
 
 // Sends a message so slowly that the service can read it with the smallest receive buffer.
@@ -197,10 +197,10 @@ std::string many_boxes(int count) {
 }
 
 RawBytes request_of_all(int bodies, std::int64_t session, std::int64_t seq) {
-  RawStates states = one_body(session, seq, 0.1);
+  WrenchRequest states = one_body(session, seq, 0.1);
   states.bodies.resize(static_cast<std::size_t>(bodies), states.bodies[0]);
   for (int i = 0; i < bodies; ++i) states.bodies[static_cast<std::size_t>(i)].body_id = i + 1;
-  return encode_states(states);
+  return encoded(states);
 }
 
 std::vector<Attack> attacks() {

@@ -12,6 +12,7 @@
 #include "service/daemon/faulty_sender.h"
 #include "tests/service/is_binomial.h"
 #include "tests/service/running_service.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/contains.h"
 #include "tests/support/timeouts.h"
 
@@ -81,7 +82,7 @@ class Observer {
     } else if (bytes[0] != fingerprint_byte_) {
       ++observed.other_fingerprint;
     } else {
-      const std::int64_t number = decode_wrenches(bytes).seq;
+      const std::int64_t number = decoded<WrenchResponse>(bytes).id.seq;
       if (copies[number]++ > 0) {
         ++observed.repeated;
       } else if (number < latest) {
@@ -93,11 +94,7 @@ class Observer {
 
   RawLcmSocket socket_;
   std::size_t whole_size_ = response_size(1);
-  std::uint8_t fingerprint_byte_ = [] {
-    std::vector<std::uint8_t> bytes;
-    encode(WrenchResponse{}, bytes);
-    return bytes[0];
-  }();
+  std::uint8_t fingerprint_byte_ = encoded(WrenchResponse{})[0];
 };
 
 FaultOptions parsed(const std::string& text) {
@@ -180,7 +177,7 @@ TEST(InjectedFaults, DelayEveryResponseWithoutDelayingRequests) {
   for (int i = 0; i < kWindow; ++i) send_request(socket, one_body(1 + i, i, 0.0));
   std::set<std::int64_t> received;
   for (int i = 0; i < kWindow; ++i) {
-    received.insert(receive(socket).seq);
+    received.insert(receive(socket).id.seq);
     EXPECT_GE(seconds_now() - start, 0.1);
   }
   EXPECT_EQ(received.size(), static_cast<std::size_t>(kWindow));
@@ -212,7 +209,8 @@ TEST(InjectedFaults, StallTheServiceThenAnswerWhatWaited) {
       request_waited = request_waited || status.queue_wait > 0.5 * kStall;
     }
     if (message->channel != "BUOYANCY_WRENCHES") continue;
-    ASSERT_EQ(decode_wrenches(message->payload).seq, seq++) << "every request is answered without a retry";
+    ASSERT_EQ(decoded<WrenchResponse>(message->payload).id.seq, seq++)
+        << "every request is answered without a retry";
     const double now = seconds_now();
     response_waited = response_waited || now - last > 0.9 * kStall;
     last = now;
@@ -234,7 +232,7 @@ TEST(InjectedFaults, MeetResponseAndItsHydrostaticsTogether) {
   std::map<std::string, std::vector<std::int64_t>> received;  // seqs by channel
   constexpr int kRequests = 100;
   for (int i = 0; i < kRequests; ++i) {
-    RawStates states = one_body(1, i, 0.0);
+    WrenchRequest states = one_body(1, i, 0.0);
     states.bodies[0].body_id = 2;
     send_request(socket, states);
     const Fate fate = draw_fate(parsed(text), static_cast<std::uint64_t>(i));
@@ -242,9 +240,9 @@ TEST(InjectedFaults, MeetResponseAndItsHydrostaticsTogether) {
       const std::optional<RawMessage> message = socket.receive_any(kWaitTimeout);
       ASSERT_TRUE(message);
       if (message->channel == "BUOYANCY_WRENCHES") {
-        received[message->channel].push_back(decode_wrenches(message->payload).seq);
+        received[message->channel].push_back(decoded<WrenchResponse>(message->payload).id.seq);
       } else if (message->channel == "BUOYANCY_HYDROSTATICS") {
-        received[message->channel].push_back(decode_hydrostatics(message->payload).seq);
+        received[message->channel].push_back(decoded<BodiesHydrostatics>(message->payload).id.seq);
       } else {
         continue;
       }
@@ -298,7 +296,7 @@ TEST(InjectedFaults, SendWhatIsDelayedWhenTheServiceEnds) {
       wait_for_status(socket, [](const ServiceStatus& status) { return status.faults.delayed == 3; }));
   service.child().send_signal(SIGTERM);
   std::set<std::int64_t> received;
-  for (int i = 0; i < 3; ++i) received.insert(receive(socket).seq);
+  for (int i = 0; i < 3; ++i) received.insert(receive(socket).id.seq);
   EXPECT_EQ(received, (std::set<std::int64_t>{0, 1, 2}));
   EXPECT_EQ(service.child().wait(kWaitTimeout), 0);
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/byte_vector.h"
+
 namespace buoyancy::service {
 namespace {
 
@@ -10,9 +12,7 @@ std::vector<std::uint8_t> status_of(std::int64_t instance_id) {
   status.scene_fingerprint = 100 + instance_id;
   status.instance_id = instance_id;
   status.version = "0.1.0";
-  std::vector<std::uint8_t> bytes;
-  encode(status, bytes);
-  return bytes;
+  return encoded(status);
 }
 
 TEST(InstanceMonitor, ReportsEachOtherInstanceOnce) {

@@ -23,8 +23,8 @@ std::string boxes(int bodies) {
   return text;
 }
 
-RawStates all_bodies(int bodies, std::int64_t seq) {
-  RawStates states = one_body(5, seq, 0.0);
+WrenchRequest all_bodies(int bodies, std::int64_t seq) {
+  WrenchRequest states = one_body(5, seq, 0.0);
   states.bodies.resize(static_cast<std::size_t>(bodies), states.bodies[0]);
   for (int i = 0; i < bodies; ++i) states.bodies[static_cast<std::size_t>(i)].body_id = i + 1;
   return states;
@@ -96,7 +96,7 @@ TEST(LargeScene, CountsAndLogsPacketsThatReceiveBufferDidNotHold) {
   send_request(socket, all_bodies(kBodies, 1));
   service.child().send_signal(SIGCONT);
   // The kernel reports what it dropped with the next packet.
-  RawStates fewer = all_bodies(kBodies, 2);
+  WrenchRequest fewer = all_bodies(kBodies, 2);
   fewer.bodies.resize(500);
   std::optional<RawBytes> response;
   for (double waited = 0.0; !response && waited < kWaitTimeout; waited += 0.2) {
@@ -104,7 +104,7 @@ TEST(LargeScene, CountsAndLogsPacketsThatReceiveBufferDidNotHold) {
     response = receive_bytes(socket, 0.2);
   }
   ASSERT_TRUE(response);
-  EXPECT_EQ(decode_wrenches(*response).seq, 2)
+  EXPECT_EQ(decoded<WrenchResponse>(*response).id.seq, 2)
       << "the large request is lost, the small one gets its response";
   const auto status =
       wait_for_status(socket, [](const ServiceStatus& now) { return now.packets_dropped > 0; });

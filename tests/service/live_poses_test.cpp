@@ -42,9 +42,9 @@ TEST_P(LivePoses, PublishesWrenchesAndForceTorqueBesideRequests) {
   for (std::int64_t i = 0; i < 20; ++i) {
     const double height = 0.1 * static_cast<double>(i) - 1.0;
     socket.send("HULL", pose_at(height, 100 + i));
-    const RawWrenches response = receive(socket);
-    EXPECT_EQ(response.utime, 100 + i);
-    EXPECT_EQ(response.seq, i);
+    const WrenchResponse response = receive(socket);
+    EXPECT_EQ(response.id.utime, 100 + i);
+    EXPECT_EQ(response.id.seq, i);
     ASSERT_EQ(response.bodies.size(), 1U);
     EXPECT_EQ(response.bodies[0].body_id, 1);
     EXPECT_NEAR(response.bodies[0].force[2], force_at(height), 1e-6);
@@ -55,7 +55,7 @@ TEST_P(LivePoses, PublishesWrenchesAndForceTorqueBesideRequests) {
     EXPECT_NEAR(message.force[2], force_at(0.5 * height), 1e-6);
 
     send_request(socket, one_body(1, i, height));
-    EXPECT_EQ(receive(socket).session_id, 1);
+    EXPECT_EQ(receive(socket).id.session_id, 1);
   }
   EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
     return status.counters.computed == 60 && status.counters.sessions == 3 &&
@@ -72,7 +72,7 @@ TEST_P(LivePoses, CountsInvalidPosesByCause) {
   ++other_type[0];
   for (const RawBytes& invalid : {RawBytes{1, 2, 3}, too_long, other_type}) socket.send("HULL", invalid);
   socket.send("HULL", pose_at(0.0, 2));
-  EXPECT_EQ(receive(socket).utime, 2);
+  EXPECT_EQ(receive(socket).id.utime, 2);
   EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
     const ServiceCounters& counters = status.counters;
     return counters.requests == 4 && counters.computed == 1 && counters.rejected_truncated == 1 &&
@@ -89,8 +89,8 @@ TEST_P(LivePoses, GetDragOnlyWithVelocities) {
   pose.orientation[0] = pose.orientation[3] = std::sqrt(0.5);  // the body's x is the world's y
   pose.vel[0] = 1.25;
   socket.send("HULL", encoded_by_lcm(pose));
-  const RawWrench moving = receive(socket).bodies.at(0);
-  EXPECT_EQ(moving.status, 0);
+  const BodyWrench moving = receive(socket).bodies.at(0);
+  EXPECT_EQ(moving.status, BodyStatus::kOk);
   const double s = 1.5 / 4.0;
   EXPECT_NEAR(moving.force[0], s * (60.0 + 22.0 * 0.5) * 0.5, 1e-9) << "the current along the body's -y";
   EXPECT_NEAR(moving.force[1], -s * (20.0 + 18.0 * 1.0) * 1.0, 1e-9) << "1 m/s faster than the current";
@@ -100,13 +100,13 @@ TEST_P(LivePoses, GetDragOnlyWithVelocities) {
   transform.trans[2] = 0.5;
   transform.quat[0] = 1.0;
   socket.send("FRAME", encoded_by_lcm(transform));
-  const RawWrench unknown = receive(socket).bodies.at(0);
-  EXPECT_EQ(unknown.status, 4) << "NON_FINITE_TWIST";
+  const BodyWrench unknown = receive(socket).bodies.at(0);
+  EXPECT_EQ(unknown.status, BodyStatus::kNonFiniteTwist);
   EXPECT_EQ(unknown.force, (std::array<double, 3>{}));
   EXPECT_EQ(unknown.submerged_volume, 0.0);
   const auto loads = socket.receive("BUOYANCY_LOADS", kWaitTimeout);
   ASSERT_TRUE(loads);
-  EXPECT_EQ(decode_loads(*loads).bodies.at(0).status, 4);
+  EXPECT_EQ(decoded<BodiesLoads>(*loads).bodies.at(0).status, BodyStatus::kNonFiniteTwist);
   EXPECT_TRUE(service.child().wait_for_text(
       "poses without velocities on FRAME, whose body 'hull' has drag or added mass: 1; such a body needs its "
       "velocities",
@@ -119,7 +119,7 @@ TEST_P(LivePoses, LackVelocitiesAfterAReloadThatAddsDrag) {
   RunningService service({"--mode", GetParam(), "--pose", "HULL=1"}, kBoxScene);
   RawLcmSocket socket;
   socket.send("HULL", pose_at(0.5, 1));
-  EXPECT_EQ(receive(socket).bodies.at(0).status, 0);
+  EXPECT_EQ(receive(socket).bodies.at(0).status, BodyStatus::kOk);
   // A status reports the poses since the last one, by the scene of its moment.
   ASSERT_TRUE(
       wait_for_status(socket, [](const ServiceStatus& status) { return status.counters.computed == 1; }));
@@ -128,7 +128,7 @@ TEST_P(LivePoses, LackVelocitiesAfterAReloadThatAddsDrag) {
   ASSERT_TRUE(service.child().wait_for_text("reloaded:", kWaitTimeout)) << service.log();
   EXPECT_FALSE(contains(service.log(), "poses without velocities")) << "not needed until then";
   socket.send("HULL", pose_at(0.5, 2));
-  EXPECT_EQ(receive(socket).bodies.at(0).status, 4) << "their frame is unknown";
+  EXPECT_EQ(receive(socket).bodies.at(0).status, BodyStatus::kNonFiniteTwist) << "their frame is unknown";
   EXPECT_TRUE(service.child().wait_for_text("--velocity-frame", kWaitTimeout)) << service.log();
 }
 

@@ -22,7 +22,7 @@ std::map<DecodeError, std::int64_t> rejected(const ServiceCounters& counters) {
 
 void expect_response(RawLcmSocket& socket, std::int64_t seq, const std::string& after) {
   send_request(socket, one_body(1, seq, 0.0));
-  EXPECT_EQ(receive(socket).seq, seq) << "after " << after;
+  EXPECT_EQ(receive(socket).id.seq, seq) << "after " << after;
 }
 
 class MalformedPackets : public testing::TestWithParam<std::string> {};

@@ -63,12 +63,11 @@ void count_expected(const RawBytes& message, Sent& sent) {
     ++sent.rejected.truncated;
     return;
   }
+  static const RawBytes kValid = encoded(WrenchRequest{});
   RawReader reader(message);
-  const auto high = static_cast<std::uint64_t>(static_cast<std::uint32_t>(reader.int32()));
-  const auto low = static_cast<std::uint64_t>(static_cast<std::uint32_t>(reader.int32()));
-  for (int i = 0; i < 8; ++i) reader.int32();
+  for (int i = 0; i < 10; ++i) reader.int32();
   const std::int64_t count = reader.int32();
-  if (static_cast<std::int64_t>(high << 32U | low) != raw_states_fingerprint()) {
+  if (!std::equal(kValid.begin(), kValid.begin() + 8, message.begin())) {  // the fingerprint
     ++sent.rejected.fingerprint;
   } else if (count < 0) {
     ++sent.rejected.count;
@@ -116,11 +115,11 @@ class Attacker {
   }
 
   RawBytes valid_request() {
-    RawStates states =
+    WrenchRequest states =
         one_body(static_cast<std::int64_t>(100 + below(200)), static_cast<std::int64_t>(below(1000)),
                  0.01 * static_cast<double>(below(100)));
     states.bodies.resize(below(5), states.bodies[0]);
-    return encode_states(states);
+    return encoded(states);
   }
 
   RawBytes corrupted(RawBytes bytes) {

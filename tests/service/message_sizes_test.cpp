@@ -30,9 +30,7 @@ template <typename Message>
 std::size_t size_of_encoded(std::size_t bodies) {
   Message message;
   message.bodies.resize(bodies);
-  std::vector<std::uint8_t> bytes;
-  encode(message, bytes);
-  return bytes.size();
+  return encoded(message).size();
 }
 
 TEST(MessageSizes, AreThoseOfEncodedMessages) {

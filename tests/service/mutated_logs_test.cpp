@@ -9,10 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "messages/wire.h"
-#include "recording/event_log.h"
 #include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
+#include "tests/support/recorded_log.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 
@@ -33,26 +32,22 @@ std::vector<std::uint8_t> request(int number) {
   state.body_id = 1;
   state.position = {1.0 * number, 0.0, 0.01 * number - 0.3};
   state.quaternion_wxyz = {0.8, 0.6, 0.0, 0.0};
-  std::vector<std::uint8_t> bytes;
   // Different lengths, so that no mutation leaves the following events aligned by chance.
-  encode(WrenchRequest{.id = {number, 7, number},
-                       .lead_time = 0.0,
-                       .bodies = std::vector<BodyState>(static_cast<std::size_t>(1 + number % 3), state)},
-         bytes);
-  return bytes;
+  return encoded(
+      WrenchRequest{.id = {number, 7, number},
+                    .lead_time = 0.0,
+                    .bodies = std::vector<BodyState>(static_cast<std::size_t>(1 + number % 3), state)});
 }
 
 Log original_log() {
-  Log log;
-  std::vector<std::uint8_t> event;
+  RecordedLog log;
+  std::vector<std::size_t> starts;
   for (int number = 0; number < kEvents; ++number) {
-    const bool wanted = number % 5 != 4;
-    encode_event(number, number, wanted ? "BUOYANCY_STATES" : "SOMEBODY_ELSES", request(number), event);
-    log.starts.push_back(log.bytes.size());
-    log.bytes.append(event.begin(), event.end());
+    starts.push_back(log.text().size());
+    log.add(number, number % 5 != 4 ? "BUOYANCY_STATES" : "SOMEBODY_ELSES", request(number));
   }
-  log.starts.push_back(log.bytes.size());
-  return log;
+  starts.push_back(log.text().size());
+  return {log.text(), starts};
 }
 
 // Replaces the bytes [begin, end) of the original log.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <stdexcept>
 
 #include <arpa/inet.h>
@@ -30,164 +29,6 @@ sockaddr_in address(const char* host) {
   result.sin_port = htons(kPort);
   inet_pton(AF_INET, host, &result.sin_addr);
   return result;
-}
-
-// The fields of the messages in their order, as lcmtypes/*.lcm define them.
-template <typename Visit>
-void visit_fields(RawState& state, Visit& visit) {
-  visit("body_id", state.body_id);
-  visit("position", state.position);
-  visit("quaternion_wxyz", state.quaternion_wxyz);
-  visit("linear_velocity", state.linear_velocity);
-  visit("angular_velocity", state.angular_velocity);
-}
-
-template <typename Visit>
-void visit_fields(RawWrench& wrench, Visit& visit) {
-  visit("body_id", wrench.body_id);
-  visit("status", wrench.status);
-  visit("force", wrench.force);
-  visit("torque", wrench.torque);
-  visit("submerged_volume", wrench.submerged_volume);
-  visit("center_of_buoyancy", wrench.center_of_buoyancy);
-  visit("force_error_bound", wrench.force_error_bound);
-  visit("torque_error_bound", wrench.torque_error_bound);
-}
-
-template <typename Visit>
-void visit_fields(RawBodyHydrostatics& body, Visit& visit) {
-  visit("body_id", body.body_id);
-  visit("status", body.status);
-  visit("submerged_volume", body.submerged_volume);
-  visit("center_of_buoyancy", body.center_of_buoyancy);
-  visit("wetted_area", body.wetted_area);
-  visit("waterplane_area", body.waterplane_area);
-  visit("waterplane_centroid", body.waterplane_centroid);
-  visit("waterplane_second_moments", body.waterplane_second_moments);
-  visit("waterplane_axes", body.waterplane_axes);
-  visit("metacentric_radii", body.metacentric_radii);
-  visit("metacenters", body.metacenters);
-  visit("metacentric_heights", body.metacentric_heights);
-  visit("stiffness", body.stiffness);
-}
-
-template <typename Visit>
-void visit_fields(RawBodyLoads& body, Visit& visit) {
-  visit("body_id", body.body_id);
-  visit("status", body.status);
-  visit("immersion", body.immersion);
-  visit("buoyancy_force", body.buoyancy_force);
-  visit("buoyancy_torque", body.buoyancy_torque);
-  visit("drag_force", body.drag_force);
-  visit("drag_torque", body.drag_torque);
-  visit("added_mass_force", body.added_mass_force);
-  visit("added_mass_torque", body.added_mass_torque);
-  visit("added_mass", body.added_mass);
-  visit("damping", body.damping);
-  visit("water_velocity", body.water_velocity);
-}
-
-template <typename Body, typename Visit>
-void visit_fields(RawResponse<Body>& response, Visit& visit) {
-  visit("utime", response.utime);
-  visit("session_id", response.session_id);
-  visit("seq", response.seq);
-  visit("num_bodies", response.num_bodies);
-  visit("bodies", response.bodies);
-}
-
-template <typename Visit>
-void visit_fields(RawStates& states, Visit& visit) {
-  visit("utime", states.utime);
-  visit("session_id", states.session_id);
-  visit("seq", states.seq);
-  visit("lead_time", states.lead_time);
-  std::int32_t num_bodies = 0;
-  visit("num_bodies", num_bodies);
-  visit("bodies", states.bodies);
-}
-
-// LCM's type fingerprint: a hash of the names, primitive types and dimensions of the fields.
-class Fingerprint {
- public:
-  void operator()(const std::string& name, std::int32_t& /*field*/) { text(name).text("int32_t").byte(0); }
-  void operator()(const std::string& name, std::int64_t& /*field*/) { text(name).text("int64_t").byte(0); }
-  void operator()(const std::string& name, double& /*field*/) { text(name).text("double").byte(0); }
-  template <std::size_t kSize>
-  void operator()(const std::string& name, std::array<double, kSize>& /*field*/) {
-    text(name).text("double").byte(1).byte(0).text(std::to_string(kSize));
-  }
-  template <std::size_t kRows, std::size_t kColumns>
-  void operator()(const std::string& name, std::array<std::array<double, kColumns>, kRows>& /*field*/) {
-    text(name).text("double").byte(2);
-    byte(0).text(std::to_string(kRows)).byte(0).text(std::to_string(kColumns));
-  }
-  // value() adds the fingerprint of the elements; the name of their type is not hashed.
-  template <typename Body>
-  void operator()(const std::string& name, std::vector<Body>& /*field*/) {
-    Fingerprint of_element;
-    Body element;
-    visit_fields(element, of_element);
-    nested_ += static_cast<std::uint64_t>(of_element.value());
-    text(name).byte(1).byte(1).text("num_bodies");
-  }
-  std::int64_t value() const {
-    const std::uint64_t sum = hash_ + nested_;
-    return static_cast<std::int64_t>(sum << 1U | sum >> 63U);
-  }
-
- private:
-  Fingerprint& byte(std::int64_t value) {
-    const auto sign_carrying = static_cast<std::uint64_t>(static_cast<std::int64_t>(hash_) >> 55);
-    hash_ = ((hash_ << 8U) ^ sign_carrying) + static_cast<std::uint64_t>(value);
-    return *this;
-  }
-  Fingerprint& text(const std::string& value) {
-    byte(static_cast<std::int64_t>(value.size()));
-    for (const char c : value) byte(c);
-    return *this;
-  }
-
-  std::uint64_t hash_ = 0x12345678;
-  std::uint64_t nested_ = 0;
-};
-
-template <typename Message>
-std::int64_t fingerprint_of() {
-  Message message;
-  Fingerprint fingerprint;
-  visit_fields(message, fingerprint);
-  return fingerprint.value();
-}
-
-// Reads the fields of a message, or of one of its bodies.
-struct FieldReader {
-  void operator()(const char* /*name*/, std::int32_t& field) { field = reader.int32(); }
-  void operator()(const char* /*name*/, std::int64_t& field) { field = reader.int64(); }
-  void operator()(const char* /*name*/, double& field) { field = reader.real(); }
-  template <typename Value, std::size_t kSize>
-  void operator()(const char* name, std::array<Value, kSize>& field) {
-    for (Value& one : field) (*this)(name, one);
-  }
-  template <typename Body>
-  void operator()(const char* /*name*/, std::vector<Body>& bodies) {
-    bodies.resize(static_cast<std::size_t>(num_bodies));
-    for (Body& body : bodies) visit_fields(body, *this);
-  }
-  RawReader& reader;
-  std::int32_t& num_bodies;
-};
-
-// Throws if bytes are not such a message.
-template <typename Response>
-Response decode_response(const RawBytes& bytes) {
-  RawReader reader(bytes);
-  if (reader.int64() != fingerprint_of<Response>()) throw std::runtime_error("wrong message type");
-  Response response;
-  FieldReader fields{reader, response.num_bodies};
-  visit_fields(response, fields);
-  if (reader.left() != 0) throw std::runtime_error("trailing bytes after the message");
-  return response;
 }
 
 }  // namespace
@@ -312,58 +153,18 @@ std::optional<RawMessage> RawLcmSocket::push_packet(const RawBytes& packet, std:
   return message;
 }
 
-RawWriter& RawWriter::real(double value) {
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  return unsigned_number(bits, 8);
-}
-
-RawWriter& RawWriter::unsigned_number(std::uint64_t value, int size) {
+RawWriter& RawWriter::unsigned_number(std::uint32_t value, int size) {
   for (int shift = 8 * (size - 1); shift >= 0; shift -= 8) {
     bytes.push_back(static_cast<std::uint8_t>(value >> static_cast<unsigned>(shift)));
   }
   return *this;
 }
 
-double RawReader::real() {
-  const std::uint64_t bits = unsigned_number(8);
-  double value = 0.0;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
-
-std::uint64_t RawReader::unsigned_number(std::size_t size) {
-  if (left() < size) throw std::runtime_error("message too short");
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < size; ++i) value = value << 8U | bytes_[position_++];
-  return value;
-}
-
-std::int64_t raw_states_fingerprint() {
-  return fingerprint_of<RawStates>();
-}
-
-RawBytes encode_states(const RawStates& states) {
-  RawWriter writer;
-  writer.int64(raw_states_fingerprint()).int64(states.utime).int64(states.session_id).int64(states.seq);
-  writer.real(states.lead_time).int32(static_cast<std::int32_t>(states.bodies.size()));
-  for (const RawState& state : states.bodies) {
-    writer.int32(state.body_id).reals(state.position).reals(state.quaternion_wxyz);
-    writer.reals(state.linear_velocity).reals(state.angular_velocity);
-  }
-  return writer.bytes;
-}
-
-RawWrenches decode_wrenches(const RawBytes& bytes) {
-  return decode_response<RawWrenches>(bytes);
-}
-
-RawHydrostatics decode_hydrostatics(const RawBytes& bytes) {
-  return decode_response<RawHydrostatics>(bytes);
-}
-
-RawLoads decode_loads(const RawBytes& bytes) {
-  return decode_response<RawLoads>(bytes);
+std::int32_t RawReader::int32() {
+  if (bytes_.size() - position_ < 4) throw std::runtime_error("message too short");
+  std::uint32_t value = 0;
+  for (int i = 0; i < 4; ++i) value = value << 8U | bytes_[position_++];
+  return static_cast<std::int32_t>(value);
 }
 
 }  // namespace buoyancy

@@ -40,7 +40,7 @@ matrix = [5, 126, 126, 0.1, 33, 33]
 )";
 
 void send_condition(RawLcmSocket& socket, const ConditionChange& change) {
-  socket.send("BUOYANCY_CONDITION", encoded_condition(change));
+  socket.send("BUOYANCY_CONDITION", encoded(change));
 }
 
 TEST(RecordedRun, ReplaysToSameBytesAsLiveRun) {
@@ -80,11 +80,11 @@ TEST(RecordedRun, ReplaysToSameBytesAsLiveRun) {
       ASSERT_TRUE(wait_for_logger()) << logger.standard_error();
     }
     // Changes that hold from the next request on; one of them cannot be used.
-    const auto next_utime = one_body(0, seq + 1, 0.0).utime;
+    const auto next_utime = one_body(0, seq + 1, 0.0).id.utime;
     if (seq % 40 == 7)
       send_condition(socket, flooded(next_utime, 0, 0.01 * static_cast<double>(seq % 99), 3));
     if (seq % 60 == 8) send_condition(socket, filled(next_utime, 0, seq == 188 ? 2.0 : 0.25, 3));
-    RawStates states = one_body(seq / 100, seq, 0.01 * static_cast<double>(seq) - 1.0);
+    WrenchRequest states = one_body(seq / 100, seq, 0.01 * static_cast<double>(seq) - 1.0);
     states.bodies.resize(static_cast<std::size_t>(1 + seq % 7), states.bodies[0]);
     states.bodies.back().body_id = static_cast<std::int32_t>(seq % 4);  // some of them unknown
     states.bodies.back().quaternion_wxyz = {0.8, 0.36, 0.48, 0.0};
@@ -93,7 +93,7 @@ TEST(RecordedRun, ReplaysToSameBytesAsLiveRun) {
     const int attempts = seq % 10 == 3 ? 2 : 1;
     for (int attempt = 0; attempt < attempts; ++attempt) {
       send_request(socket, states);
-      ASSERT_EQ(receive(socket).seq, seq);
+      ASSERT_EQ(receive(socket).id.seq, seq);
     }
   }
   // The loads of the last request follow its wrench.

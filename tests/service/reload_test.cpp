@@ -28,9 +28,9 @@ constexpr double kSubmerged = -100.0;
 
 double vertical_force(RawLcmSocket& socket, std::int64_t seq, double height = kHalfSubmerged) {
   send_request(socket, one_body(1, seq, height));
-  const RawWrenches response = receive(socket);
-  EXPECT_EQ(response.session_id, 1);
-  EXPECT_EQ(response.seq, seq);
+  const WrenchResponse response = receive(socket);
+  EXPECT_EQ(response.id.session_id, 1);
+  EXPECT_EQ(response.id.seq, seq);
   return response.bodies.at(0).force[2];
 }
 
@@ -88,8 +88,8 @@ TEST(Reload, KeepsResponsesOfOldSceneForRetries) {
   send_request(socket, one_body(1, 6, 0.3));
   const auto next = receive_bytes(socket);
   ASSERT_TRUE(next);
-  EXPECT_NEAR(decode_wrenches(*next).bodies[0].force[2], 0.5 * decode_wrenches(*first).bodies[0].force[2],
-              1e-6);
+  EXPECT_NEAR(decoded<WrenchResponse>(*next).bodies[0].force[2],
+              0.5 * decoded<WrenchResponse>(*first).bodies[0].force[2], 1e-6);
 }
 
 TEST(Reload, KeepsOldSceneIfNewOneIsInvalid) {

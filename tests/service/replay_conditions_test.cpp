@@ -14,7 +14,7 @@ constexpr int kRequests = 6'000;  // of four blocks, and more than a batch holds
 
 std::string condition_event(std::int64_t timestamp, const ConditionChange& change,
                             const std::string& channel = kChannel) {
-  return event(channel, timestamp, encoded_condition(change));
+  return event(channel, timestamp, encoded(change));
 }
 
 // Every 97th event is a change, some of them for earlier or later requests, and one cannot be used.
@@ -60,8 +60,7 @@ TEST_F(ReplayWithConditions, RespondsLikeOneHandlerOnAnyThreads) {
     ASSERT_EQ(hydrostatics.size(), std::size_t{kRequests});
     for (int i = 0; i < kRequests; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      for (const ConditionChange& change : changes_at(i))
-        handler.receive_condition(encoded_condition(change));
+      for (const ConditionChange& change : changes_at(i)) handler.receive_condition(encoded(change));
       const Bytes expected = handler.handle(request(i, 0.0001 * i - 0.3));
       ASSERT_TRUE(std::ranges::equal(found[at].bytes, expected)) << i << " of " << jobs << " threads";
       ASSERT_TRUE(std::ranges::equal(hydrostatics[at].bytes, handler.last_hydrostatics())) << i;

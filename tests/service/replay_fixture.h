@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "messages/wire.h"
-#include "recording/event_log.h"
 #include "tests/service/one_box_scene.h"
 #include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
+#include "tests/support/recorded_log.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 
@@ -49,16 +49,14 @@ inline std::vector<std::uint8_t> request(std::int64_t utime, double height) {
   request.bodies[0].body_id = 1;
   request.bodies[0].position = {7.0, 8.0, height};
   request.bodies[0].quaternion_wxyz = {1.0, 0.0, 0.0, 0.0};
-  std::vector<std::uint8_t> bytes;
-  encode(request, bytes);
-  return bytes;
+  return encoded(request);
 }
 
 inline std::string event(const std::string& channel, std::int64_t timestamp,
                          const std::vector<std::uint8_t>& data) {
-  std::vector<std::uint8_t> bytes;
-  encode_event(0, timestamp, channel, data, bytes);
-  return {bytes.begin(), bytes.end()};
+  RecordedLog log;
+  log.add(timestamp, channel, data);
+  return log.text();
 }
 
 inline std::string log_of_requests(int count) {

@@ -29,7 +29,7 @@ class ReplayLoads : public Replay {
   std::vector<BodiesLoads> loads_in(const std::string& log, const std::string& channel = "BUOYANCY_LOADS") {
     std::vector<BodiesLoads> loads;
     for (const LoggedEvent& one : events_of(log, only_channel(channel))) {
-      EXPECT_FALSE(decode(one.bytes, loads.emplace_back()));
+      loads.push_back(decoded<BodiesLoads>(one.bytes));
     }
     return loads;
   }
@@ -207,9 +207,7 @@ TEST_F(ReplayLoads, PosesGetDragOnlyWithVelocities) {
   }
   std::vector<BodyWrench> wrenches;
   for (const LoggedEvent& one : events_of(path("out.lcmlog"), only_channel("BUOYANCY_WRENCHES"))) {
-    WrenchResponse response;
-    ASSERT_FALSE(decode(one.bytes, response));
-    wrenches.push_back(response.bodies.at(0));
+    wrenches.push_back(decoded<WrenchResponse>(one.bytes).bodies.at(0));
   }
   ASSERT_EQ(wrenches.size(), 4U);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -246,8 +244,7 @@ class ComparedLoads : public ReplayLoads {
     int number = 0;
     for (LoggedEvent& one : events_of(path("baseline.lcmlog"))) {
       if (one.channel == "BUOYANCY_LOADS" && ++number == 2) {
-        BodiesLoads loads;
-        EXPECT_FALSE(decode(one.bytes, loads));
+        auto loads = decoded<BodiesLoads>(one.bytes);
         change(loads.bodies.at(0));
         encode(loads, one.bytes);
       }

@@ -335,9 +335,7 @@ TEST_F(ReplayParts, WarnOfUnseenChannelsOnlyWhenJoined) {
 TEST_F(ReplayParts, FailOnRequestInSessionOfPoses) {
   WrenchRequest request;
   request.id.session_id = 0x706f736500000000;
-  std::vector<std::uint8_t> bytes;
-  encode(request, bytes);
-  const std::string input = write("in.lcmlog", event("BUOYANCY_STATES", 1, bytes));
+  const std::string input = write("in.lcmlog", event("BUOYANCY_STATES", 1, encoded(request)));
   const FinishedProcess finished = run_part(input, path("out.lcmlog"), {1, 1}, {"--pose", "POSE=1"});
   EXPECT_EQ(finished.exit_code, 1);
   EXPECT_TRUE(contains(finished.standard_error, "session_id of a pose channel"));

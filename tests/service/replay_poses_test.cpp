@@ -35,7 +35,7 @@ double force_at(double height) {
 std::vector<WrenchResponse> responses_in(const std::string& path) {
   std::vector<WrenchResponse> responses;
   for (const LoggedEvent& event : events_of(path, only_channel("BUOYANCY_WRENCHES"))) {
-    EXPECT_FALSE(decode(event.bytes, responses.emplace_back()));
+    responses.push_back(decoded<WrenchResponse>(event.bytes));
   }
   return responses;
 }
@@ -246,9 +246,7 @@ TEST_F(ReplayPoses, ReportsDifferencesFromNonFiniteBaselines) {
         for (WrenchResponse& response : responses_in(path("baseline.lcmlog"))) {
           BodyWrench& wrench = response.bodies.at(0);
           (in_force ? wrench.force[1] : wrench.*bound) = number;
-          std::vector<std::uint8_t> bytes;
-          encode(response, bytes);
-          changed += event("BUOYANCY_WRENCHES", response.id.utime / 10, bytes);
+          changed += event("BUOYANCY_WRENCHES", response.id.utime / 10, encoded(response));
         }
         write("changed.lcmlog", changed);
         EXPECT_EQ(

@@ -76,8 +76,7 @@ TEST_F(Replay, MatchesArchimedesPrincipleForEachCsvRow) {
 TEST_F(Replay, WritesNumbersThatRoundTripExactly) {
   replay(write("in.csv", std::string(kPoseHeader) + "0,1,0,0,0.1,0.9998,0.02,0,0\n"), path("out.csv"));
   replay(path("in.csv"), path("out.lcmlog"));
-  WrenchResponse response;
-  ASSERT_FALSE(decode(events_of(path("out.lcmlog")).at(0).bytes, response));
+  const auto response = decoded<WrenchResponse>(events_of(path("out.lcmlog")).at(0).bytes);
   const CsvRow row = csv_rows(read_file(path("out.csv"))).at(1);
   const BodyWrench& wrench = response.bodies.at(0);
   EXPECT_EQ(std::stod(row[5]), wrench.force[2]);
@@ -98,8 +97,7 @@ TEST_F(Replay, KeepsTimestampsAndCopiesNoOtherChannel) {
     const auto timestamp = static_cast<std::int64_t>(2 * i + 2);
     EXPECT_EQ(responses[i].channel, "BUOYANCY_WRENCHES");
     EXPECT_EQ(responses[i].timestamp, timestamp);
-    WrenchResponse response;
-    ASSERT_FALSE(decode(responses[i].bytes, response));
+    const auto response = decoded<WrenchResponse>(responses[i].bytes);
     EXPECT_EQ(response.id.utime, 10 * timestamp);
     EXPECT_DOUBLE_EQ(response.bodies.at(0).submerged_volume, timestamp == 2 ? 12.0 : 6.0);
   }
@@ -121,8 +119,7 @@ TEST_F(Replay, WritesRequestedHydrostaticsToLogsOnly) {
   for (std::size_t i = 0; i < 3; ++i) {
     const auto seq = static_cast<std::int64_t>(i);
     EXPECT_EQ(found[i].timestamp, 500 + seq);
-    BodiesHydrostatics hydrostatics;
-    ASSERT_FALSE(decode(found[i].bytes, hydrostatics));
+    const auto hydrostatics = decoded<BodiesHydrostatics>(found[i].bytes);
     EXPECT_EQ(hydrostatics.id.seq, seq);
     EXPECT_DOUBLE_EQ(hydrostatics.bodies.at(0).waterplane_area, 6.0);
   }

@@ -24,7 +24,7 @@ struct Expected3 {
 };
 
 // A box of 2 x 3 x 4 m rotated about the vertical by yaw, or lying on its side.
-Expected3 box_in_water(const RawState& state, double yaw, bool lying) {
+Expected3 box_in_water(const BodyState& state, double yaw, bool lying) {
   const double height = lying ? 3.0 : 4.0;
   const double area = 24.0 / height;
   const double depth = std::clamp(height / 2 - state.position[2], 0.0, height);
@@ -41,7 +41,7 @@ Expected3 box_in_water(const RawState& state, double yaw, bool lying) {
 }
 
 struct Pose {
-  RawState state;
+  BodyState state;
   double yaw = 0.0;
   bool lying = false;
 };
@@ -70,23 +70,23 @@ TEST_P(RoundTrip, MatchesArchimedesPrincipleForIndependentClient) {
   const RunningService service;
   RawLcmSocket socket;
   const std::vector<Pose> requested = poses(GetParam());
-  RawStates states;
-  states.utime = -123'456'789;
-  states.session_id = 0x0123'4567'89AB'CDEF;
-  states.seq = 42;
+  WrenchRequest states;
+  states.id.utime = -123'456'789;
+  states.id.session_id = 0x0123'4567'89AB'CDEF;
+  states.id.seq = 42;
   for (const Pose& pose : requested) states.bodies.push_back(pose.state);
   send_request(socket, states);
-  const RawWrenches response = receive(socket);
-  EXPECT_EQ(response.utime, states.utime);
-  EXPECT_EQ(response.session_id, states.session_id);
-  EXPECT_EQ(response.seq, states.seq);
+  const WrenchResponse response = receive(socket);
+  EXPECT_EQ(response.id.utime, states.id.utime);
+  EXPECT_EQ(response.id.session_id, states.id.session_id);
+  EXPECT_EQ(response.id.seq, states.id.seq);
   ASSERT_EQ(response.bodies.size(), requested.size());
   for (std::size_t i = 0; i < requested.size(); ++i) {
-    const RawWrench& wrench = response.bodies[i];
+    const BodyWrench& wrench = response.bodies[i];
     const Expected3 expected = box_in_water(requested[i].state, requested[i].yaw, requested[i].lying);
     const double full_force = kDensity * kGravity * 24.0;
     EXPECT_EQ(wrench.body_id, requested[i].state.body_id) << i;
-    EXPECT_EQ(wrench.status, 0) << i;
+    EXPECT_EQ(wrench.status, BodyStatus::kOk) << i;
     EXPECT_EQ(wrench.force[0], 0.0) << i;
     EXPECT_EQ(wrench.force[1], 0.0) << i;
     EXPECT_NEAR(wrench.force[2], expected.force_z, kRelative * full_force) << i;
@@ -107,7 +107,7 @@ TEST(HydrostaticsRoundTrip, DropsNoRequestForServicesOwnPackets) {
   const RunningService service({"-l", "udpm://239.255.76.67:7667?recv_buf_size=106496"},
                                kHydrostaticBoxScene);
   RawLcmSocket socket;
-  RawStates states = one_body(9, 1, 0.5);
+  WrenchRequest states = one_body(9, 1, 0.5);
   states.bodies[0].body_id = 2;
   states.bodies.resize(600, states.bodies[0]);
   send_request(socket, states);
@@ -126,15 +126,15 @@ TEST(RoundTrip, CompletesWithoutSpinning) {
   RawLcmSocket socket;
   for (std::int64_t seq = 1; seq <= 300; ++seq) {
     send_request(socket, one_body(3, seq, 0.001 * static_cast<double>(seq)));
-    ASSERT_EQ(receive(socket).seq, seq);
+    ASSERT_EQ(receive(socket).id.seq, seq);
   }
 }
 
 TEST(HydrostaticsRoundTrip, MatchesClosedFormForBox) {
   const RunningService service({}, kHydrostaticBoxScene);
   RawLcmSocket socket;
-  RawStates states = one_body(9, 3, 0.5);
-  states.utime = 77;
+  WrenchRequest states = one_body(9, 3, 0.5);
+  states.id.utime = 77;
   states.bodies.resize(3, states.bodies[0]);
   states.bodies[1].body_id = 2;
   states.bodies[2].body_id = 5;  // unknown
@@ -142,14 +142,14 @@ TEST(HydrostaticsRoundTrip, MatchesClosedFormForBox) {
   EXPECT_EQ(receive(socket).bodies.size(), 3U);
   const auto bytes = socket.receive("BUOYANCY_HYDROSTATICS", kWaitTimeout);
   ASSERT_TRUE(bytes);
-  const RawHydrostatics message = decode_hydrostatics(*bytes);
-  EXPECT_EQ(message.utime, 77);
-  EXPECT_EQ(message.session_id, 9);
-  EXPECT_EQ(message.seq, 3);
+  const BodiesHydrostatics message = decoded<BodiesHydrostatics>(*bytes);
+  EXPECT_EQ(message.id.utime, 77);
+  EXPECT_EQ(message.id.session_id, 9);
+  EXPECT_EQ(message.id.seq, 3);
   ASSERT_EQ(message.bodies.size(), 1U) << "the scene requests none of body 1";
-  const RawBodyHydrostatics& body = message.bodies[0];
+  const BodyHydrostatics& body = message.bodies[0];
   EXPECT_EQ(body.body_id, 2);
-  EXPECT_EQ(body.status, 0);
+  EXPECT_EQ(body.status, BodyStatus::kOk);
   const double draft = 1.5;
   const double volume = 6.0 * draft;
   EXPECT_NEAR(body.submerged_volume, volume, 1e-12);
@@ -180,7 +180,7 @@ TEST(HydrostaticsRoundTrip, MatchesClosedFormForBox) {
 TEST(HydrostaticsRoundTrip, IsSentAgainForRetriesAndOnlyForBodiesThatRequestIt) {
   const RunningService service({"--hydrostatics-channel", "H"}, kHydrostaticBoxScene);
   RawLcmSocket socket;
-  RawStates with_hydrostatics = one_body(1, 1, 0.3);
+  WrenchRequest with_hydrostatics = one_body(1, 1, 0.3);
   with_hydrostatics.bodies[0].body_id = 2;
   send_request(socket, with_hydrostatics);
   const auto first = socket.receive("H", kWaitTimeout);
@@ -188,33 +188,33 @@ TEST(HydrostaticsRoundTrip, IsSentAgainForRetriesAndOnlyForBodiesThatRequestIt) 
   send_request(socket, with_hydrostatics);
   EXPECT_EQ(socket.receive("H", kWaitTimeout), first);
   send_request(socket, one_body(1, 2, 0.3));
-  with_hydrostatics.seq = 3;
+  with_hydrostatics.id.seq = 3;
   send_request(socket, with_hydrostatics);
   const auto next = socket.receive("H", kWaitTimeout);
   ASSERT_TRUE(next);
-  EXPECT_EQ(decode_hydrostatics(*next).seq, 3) << "request 2 gets none";
+  EXPECT_EQ(decoded<BodiesHydrostatics>(*next).id.seq, 3) << "request 2 gets none";
 }
 
 TEST(LoadsRoundTrip, MatchesClosedFormForMovingBox) {
   const RunningService service({}, kLoadsBoxScene);
   RawLcmSocket socket;
-  RawStates states = one_body(9, 3, 0.5);
-  states.utime = 77;
+  WrenchRequest states = one_body(9, 3, 0.5);
+  states.id.utime = 77;
   states.bodies[0].linear_velocity = {1.0, 0.0, 0.0};
   states.bodies.resize(2, states.bodies[0]);
   states.bodies[1].body_id = 5;  // unknown
   send_request(socket, states);
-  const RawWrenches response = receive(socket);
+  const WrenchResponse response = receive(socket);
   const auto bytes = socket.receive("BUOYANCY_LOADS", kWaitTimeout);
   ASSERT_TRUE(bytes);
-  const RawLoads message = decode_loads(*bytes);
-  EXPECT_EQ(message.utime, 77);
-  EXPECT_EQ(message.session_id, 9);
-  EXPECT_EQ(message.seq, 3);
+  const BodiesLoads message = decoded<BodiesLoads>(*bytes);
+  EXPECT_EQ(message.id.utime, 77);
+  EXPECT_EQ(message.id.session_id, 9);
+  EXPECT_EQ(message.id.seq, 3);
   ASSERT_EQ(message.bodies.size(), 1U);
-  const RawBodyLoads& body = message.bodies[0];
+  const BodyLoads& body = message.bodies[0];
   EXPECT_EQ(body.body_id, 1);
-  EXPECT_EQ(body.status, 0);
+  EXPECT_EQ(body.status, BodyStatus::kOk);
   const double s = 1.5 / 4.0;
   const std::array<double, 2> nu{0.5, -0.25};  // relative to the current
   EXPECT_NEAR(body.immersion, s, 1e-14);
@@ -238,20 +238,20 @@ TEST(LoadsRoundTrip, IsSentAgainForRetriesAndOnlyForBodiesThatRequestIt) {
   const RunningService service({"--loads-channel", "L"},
                                kLoadsBoxScene + "[[body]]\nid = 2\nshape = { type = \"box\" }\n");
   RawLcmSocket socket;
-  RawStates states = one_body(1, 1, 0.3);
+  WrenchRequest states = one_body(1, 1, 0.3);
   send_request(socket, states);
   const auto first = socket.receive("L", kWaitTimeout);
   ASSERT_TRUE(first);
   send_request(socket, states);
   EXPECT_EQ(socket.receive("L", kWaitTimeout), first);
-  RawStates without = one_body(1, 2, 0.3);
+  WrenchRequest without = one_body(1, 2, 0.3);
   without.bodies[0].body_id = 2;
   send_request(socket, without);
-  states.seq = 3;
+  states.id.seq = 3;
   send_request(socket, states);
   const auto next = socket.receive("L", kWaitTimeout);
   ASSERT_TRUE(next);
-  EXPECT_EQ(decode_loads(*next).seq, 3) << "request 2 gets none";
+  EXPECT_EQ(decoded<BodiesLoads>(*next).id.seq, 3) << "request 2 gets none";
 }
 
 TEST(LockstepMode, RepeatsSameBytesForRetryWithoutComputing) {
@@ -288,21 +288,21 @@ TEST(LockstepMode, HandlesEveryRequestOfBurstInOrder) {
   RawLcmSocket socket;
   for (std::int64_t seq = 0; seq < 200; ++seq)
     send_request(socket, one_body(1, seq, 0.01 * static_cast<double>(seq)));
-  for (std::int64_t seq = 0; seq < 200; ++seq) ASSERT_EQ(receive(socket).seq, seq);
+  for (std::int64_t seq = 0; seq < 200; ++seq) ASSERT_EQ(receive(socket).id.seq, seq);
 }
 
 TEST(LockstepMode, HandlesRequestsOfRestartedClientAtOnce) {
   const RunningService service;
   RawLcmSocket socket;
   send_request(socket, one_body(1, 1'000'000, 0.0));
-  EXPECT_EQ(receive(socket).seq, 1'000'000);
+  EXPECT_EQ(receive(socket).id.seq, 1'000'000);
   send_request(socket, one_body(2, 0, 1.0));
-  const RawWrenches other_session = receive(socket);
-  EXPECT_EQ(other_session.session_id, 2);
+  const WrenchResponse other_session = receive(socket);
+  EXPECT_EQ(other_session.id.session_id, 2);
   EXPECT_DOUBLE_EQ(other_session.bodies[0].submerged_volume, 6.0);
   send_request(socket, one_body(1, 0, -1.0));
-  const RawWrenches same_session = receive(socket);
-  EXPECT_EQ(same_session.seq, 0);
+  const WrenchResponse same_session = receive(socket);
+  EXPECT_EQ(same_session.id.seq, 0);
   EXPECT_DOUBLE_EQ(same_session.bodies[0].submerged_volume, 18.0);
 }
 
@@ -337,12 +337,12 @@ TEST(LockstepMode, AcceptsAnyClientClock) {
   std::int64_t seq = 0;
   for (const std::int64_t utime : {std::int64_t{0}, kHour, -kHour, std::numeric_limits<std::int64_t>::max(),
                                    std::numeric_limits<std::int64_t>::min(), std::int64_t{1}}) {
-    RawStates states = one_body(1, ++seq, 0.5);
-    states.utime = utime;
+    WrenchRequest states = one_body(1, ++seq, 0.5);
+    states.id.utime = utime;
     send_request(socket, states);
-    const RawWrenches response = receive(socket);
-    EXPECT_EQ(response.utime, utime);
-    EXPECT_EQ(response.seq, seq);
+    const WrenchResponse response = receive(socket);
+    EXPECT_EQ(response.id.utime, utime);
+    EXPECT_EQ(response.id.seq, seq);
     EXPECT_NEAR(response.bodies[0].force[2], 90'000.0, 1e-6) << utime;
   }
   EXPECT_TRUE(wait_for_status(socket, [seq](const ServiceStatus& status) {
@@ -353,19 +353,20 @@ TEST(LockstepMode, AcceptsAnyClientClock) {
 TEST(LockstepMode, ReturnsStatusAndZerosForEachInvalidBody) {
   const RunningService service;
   RawLcmSocket socket;
-  RawStates states = one_body(1, 1, 0.0);
+  WrenchRequest states = one_body(1, 1, 0.0);
   states.bodies.resize(5, states.bodies[0]);
   states.bodies[1].body_id = 77;
   states.bodies[2].position[1] = NAN;
   states.bodies[3].quaternion_wxyz = {1.1, 0.0, 0.0, 0.0};
   states.bodies[4].quaternion_wxyz = {1.0005, 0.0, 0.0, 0.0};
   send_request(socket, states);
-  const RawWrenches response = receive(socket);
+  const WrenchResponse response = receive(socket);
   ASSERT_EQ(response.bodies.size(), 5U);
-  const std::array<std::int32_t, 5> statuses{0, 1, 2, 3, 0};
+  using enum BodyStatus;
+  const std::array<BodyStatus, 5> statuses{kOk, kUnknownBody, kNonFinitePose, kBadQuaternion, kOk};
   for (std::size_t i = 0; i < 5; ++i) {
     EXPECT_EQ(response.bodies[i].status, statuses[i]) << i;
-    EXPECT_NEAR(response.bodies[i].force[2], statuses[i] == 0 ? 120'000.0 : 0.0, 1e-6) << i;
+    EXPECT_NEAR(response.bodies[i].force[2], statuses[i] == kOk ? 120'000.0 : 0.0, 1e-6) << i;
   }
   EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
     return status.counters.bodies[0] == 2 && status.counters.bodies[1] == 1 &&
@@ -385,9 +386,9 @@ TEST(LatestMode, HandlesNewestPendingRequestOfEachSession) {
   service.child().send_signal(SIGCONT);
   std::map<std::int64_t, std::int64_t> newest;
   while (newest[7] < kRequests || newest[8] < kRequests) {
-    const RawWrenches response = receive(socket);
-    EXPECT_GT(response.seq, newest[response.session_id]) << "never an older one";
-    newest[response.session_id] = response.seq;
+    const WrenchResponse response = receive(socket);
+    EXPECT_GT(response.id.seq, newest[response.id.session_id]) << "never an older one";
+    newest[response.id.session_id] = response.id.seq;
   }
   EXPECT_TRUE(wait_for_status(socket, [](const ServiceStatus& status) {
     const ServiceCounters& counters = status.counters;
@@ -404,12 +405,12 @@ TEST(LatestMode, DropsStaleRequestsAndAcceptsRestartedClients) {
   send_request(socket, one_body(1, 99, 0.0));
   send_request(socket, one_body(2, 1, 0.0));
   service.child().send_signal(SIGCONT);
-  EXPECT_EQ(receive(socket).seq, 100);
-  const RawWrenches next = receive(socket);
-  EXPECT_EQ(next.session_id, 2) << "99 is stale";
+  EXPECT_EQ(receive(socket).id.seq, 100);
+  const WrenchResponse next = receive(socket);
+  EXPECT_EQ(next.id.session_id, 2) << "99 is stale";
   for (const std::int64_t seq : {0, 1, 2}) {
     send_request(socket, one_body(1, seq, 0.0));
-    EXPECT_EQ(receive(socket).seq, seq);
+    EXPECT_EQ(receive(socket).id.seq, seq);
   }
   EXPECT_TRUE(
       wait_for_status(socket, [](const ServiceStatus& status) { return status.counters.stale >= 1; }));
@@ -419,12 +420,12 @@ TEST(Buoyancyd, UsesChannelNamesLiterally) {
   const RunningService service(
       {"--states-channel", "a.b", "--wrenches-channel", "w(1|2)", "--status-channel", "s"});
   RawLcmSocket socket;
-  socket.send("BUOYANCY_STATES", encode_states(one_body(1, 1, 0.0)));
-  socket.send("axb", encode_states(one_body(1, 2, 0.0)));
-  socket.send("a.b", encode_states(one_body(1, 3, 0.0)));
+  socket.send("BUOYANCY_STATES", encoded(one_body(1, 1, 0.0)));
+  socket.send("axb", encoded(one_body(1, 2, 0.0)));
+  socket.send("a.b", encoded(one_body(1, 3, 0.0)));
   const auto bytes = socket.receive("w(1|2)", kWaitTimeout);
   ASSERT_TRUE(bytes);
-  EXPECT_EQ(decode_wrenches(*bytes).seq, 3);
+  EXPECT_EQ(decoded<WrenchResponse>(*bytes).id.seq, 3);
   EXPECT_TRUE(socket.receive("s", kWaitTimeout));
 }
 

@@ -13,6 +13,7 @@
 #include "tests/service/one_box_scene.h"
 #include "tests/service/raw_lcm.h"
 #include "tests/support/build_paths.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/running_program.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
@@ -77,18 +78,18 @@ class RunningService {
   RunningProgram child_;
 };
 
-inline RawStates one_body(std::int64_t session_id, std::int64_t seq, double height) {
-  RawStates states;
-  states.utime = 1'000 * seq;
-  states.session_id = session_id;
-  states.seq = seq;
-  states.bodies.resize(1);
-  states.bodies[0].position = {1.0, 2.0, height};
-  return states;
+inline WrenchRequest one_body(std::int64_t session_id, std::int64_t seq, double height) {
+  return {.id = {.utime = 1'000 * seq, .session_id = session_id, .seq = seq},
+          .lead_time = 0.0,
+          .bodies = {{.body_id = 1,
+                      .position = {1.0, 2.0, height},
+                      .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0},
+                      .linear_velocity = {},
+                      .angular_velocity = {}}}};
 }
 
-inline void send_request(RawLcmSocket& socket, const RawStates& states) {
-  socket.send("BUOYANCY_STATES", encode_states(states));
+inline void send_request(RawLcmSocket& socket, const WrenchRequest& states) {
+  socket.send("BUOYANCY_STATES", encoded(states));
 }
 
 inline std::optional<RawBytes> receive_bytes(RawLcmSocket& socket, double seconds = kWaitTimeout) {
@@ -96,10 +97,10 @@ inline std::optional<RawBytes> receive_bytes(RawLcmSocket& socket, double second
 }
 
 // Throws if no response arrives.
-inline RawWrenches receive(RawLcmSocket& socket) {
+inline WrenchResponse receive(RawLcmSocket& socket) {
   const std::optional<RawBytes> bytes = receive_bytes(socket);
   if (!bytes) throw std::runtime_error("no response");
-  return decode_wrenches(*bytes);
+  return decoded<WrenchResponse>(*bytes);
 }
 
 // The first status that satisfies `wanted`; nullopt: none within kWaitTimeout.

@@ -83,7 +83,7 @@ TEST_F(SystemdNotifierTest, ReportsReadyOnceRequestsAreHandled) {
   const RunningService service({}, kBoxScene, environment());
   ASSERT_TRUE(systemd_.has_received("READY=1"));
   send_request(socket_, one_body(1, 1, 0.0));
-  EXPECT_EQ(receive(socket_).seq, 1);
+  EXPECT_EQ(receive(socket_).id.seq, 1);
   EXPECT_TRUE(systemd_.has_received("STATUS=2 bodies, 1 request answered"));
 }
 
@@ -173,7 +173,7 @@ TEST(Buoyancyd, HandlesRequestsAfterNotifySocketIsGone) {
   RawLcmSocket socket;
   for (int status = 0; status < 3; ++status) ASSERT_TRUE(socket.receive("BUOYANCY_STATUS", kWaitTimeout));
   send_request(socket, one_body(1, 1, 0.0));
-  EXPECT_EQ(receive(socket).seq, 1);
+  EXPECT_EQ(receive(socket).id.seq, 1);
 }
 
 }  // namespace

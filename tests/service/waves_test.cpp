@@ -25,19 +25,18 @@ void send_sea(RawLcmSocket& socket, const SeaState& sea) {
 
 SeaState receive_sea(RawLcmSocket& socket) {
   const std::optional<RawBytes> bytes = socket.receive("BUOYANCY_SEA", kWaitTimeout);
-  SeaState sea;
-  if (!bytes || decode(*bytes, sea)) throw std::runtime_error("no sea");
-  return sea;
+  if (!bytes) throw std::runtime_error("no sea");
+  return decoded<SeaState>(*bytes);
 }
 
 // The response to a request that is sent anew until its status is the wanted one.
-RawWrench wrench_with_status(RawLcmSocket& socket, std::int64_t utime, BodyStatus wanted) {
+BodyWrench wrench_with_status(RawLcmSocket& socket, std::int64_t utime, BodyStatus wanted) {
   for (std::int64_t seq = 1;; ++seq) {
-    RawStates states = one_body(9, seq, 0.2);
-    states.utime = utime;
+    WrenchRequest states = one_body(9, seq, 0.2);
+    states.id.utime = utime;
     send_request(socket, states);
-    const RawWrench wrench = receive(socket).bodies.at(0);
-    if (wrench.status == static_cast<std::int32_t>(wanted)) return wrench;
+    const BodyWrench wrench = receive(socket).bodies.at(0);
+    if (wrench.status == wanted) return wrench;
   }
 }
 
@@ -86,16 +85,16 @@ TEST(ServiceInWaves, PublishesTheSeaOfEachReload) {
 TEST(ServiceInWaves, UsesTheSeaThatItReceives) {
   RawLcmSocket socket;
   const RunningService service({}, box_in("waves = \"received\"\n"));
-  RawStates early = one_body(9, 0, 0.2);
+  WrenchRequest early = one_body(9, 0, 0.2);
   send_request(socket, early);
-  const RawWrench without = receive(socket).bodies.at(0);
-  EXPECT_EQ(without.status, static_cast<std::int32_t>(BodyStatus::kNoSea));
+  const BodyWrench without = receive(socket).bodies.at(0);
+  EXPECT_EQ(without.status, BodyStatus::kNoSea);
   EXPECT_EQ(without.force, (std::array<double, 3>{}));
 
   SeaState sea = sea_of(kSwell, 77);
   sea.utime = 1'000'000;
   send_sea(socket, sea);
-  const RawWrench in_waves = wrench_with_status(socket, 2'000'000, BodyStatus::kOk);
+  const BodyWrench in_waves = wrench_with_status(socket, 2'000'000, BodyStatus::kOk);
   EXPECT_NE(in_waves.force[0], 0.0);
   EXPECT_EQ(wrench_with_status(socket, 999'999, BodyStatus::kNoSea).force, (std::array<double, 3>{}));
 

@@ -13,6 +13,7 @@
 #include "messages/conversions.h"
 #include "simulation/run_warnings.h"
 #include "tests/simulation/in_process_run.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/scene_of.h"
 
 namespace buoyancy {
@@ -89,8 +90,7 @@ TEST(ConditionSchedule, AnnouncesEveryConditionInTimeInSpiteOfLosses) {
       if (step % 2 == 1) std::ranges::reverse(sent);
       for (const ConditionChange& change : sent) {
         if (!is_repeated && is_lost()) continue;
-        encode(change, bytes);
-        ASSERT_TRUE(timeline.receive(bytes, scene));
+        ASSERT_TRUE(timeline.receive(encoded(change), scene));
       }
       BodyCondition known;
       UtimeRange range;
@@ -148,9 +148,7 @@ TEST(ConditionSchedule, AnnouncesAgainWhatHolds) {
   ConditionTimeline restarted(scene);
   for (std::int64_t step = 100; step < 100 + kRenewedSteps; ++step) {
     for (const ConditionChange& change : schedule.announced_at(step)) {
-      std::vector<std::uint8_t> bytes;
-      encode(change, bytes);
-      ASSERT_TRUE(restarted.receive(bytes, scene));
+      ASSERT_TRUE(restarted.receive(encoded(change), scene));
     }
   }
   BodyCondition known;

@@ -62,9 +62,7 @@ BodyState state_of(std::int32_t id, const Pose& pose) {
 WrenchResponse response_of(RequestHandler& handler, const std::vector<BodyState>& bodies,
                            double lead_time = 0.0) {
   static std::int64_t seq = 0;
-  WrenchResponse response;
-  EXPECT_FALSE(decode(handler.handle(request_bytes({.seq = ++seq}, bodies, lead_time)), response));
-  return response;
+  return decoded<WrenchResponse>(handler.handle(request_bytes({.seq = ++seq}, bodies, lead_time)));
 }
 
 TEST(StressQuaternions, NormalisesNormsWithinThousandthOfOne) {

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "messages/condition_change.h"
+#include "tests/support/byte_vector.h"
 
 namespace buoyancy {
 
@@ -38,12 +38,6 @@ inline std::string damaged_boxes(const DamagedBoxes& condition = {},
          "[[body]]\nid = 2\nname = \"plain\"\n" +
          box + "[[body]]\nid = 3\nname = \"barge\"\n" + box +
          "[[body.tank]]\nname = \"bilge\"\nshape = { type = \"box\", size = [1, 1, 1] }\nfill = 0\n";
-}
-
-inline std::vector<std::uint8_t> encoded_condition(const ConditionChange& change) {
-  std::vector<std::uint8_t> bytes;
-  encode(change, bytes);
-  return bytes;
 }
 
 inline ConditionChange flooded(std::int64_t utime, std::int32_t compartment, double share,

@@ -24,9 +24,7 @@ using nlohmann::json;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<std::uint8_t> response_bytes(const RequestId& id, std::vector<BodyWrench> bodies) {
-  std::vector<std::uint8_t> bytes;
-  encode(WrenchResponse{.id = id, .bodies = std::move(bodies)}, bytes);
-  return bytes;
+  return encoded(WrenchResponse{.id = id, .bodies = std::move(bodies)});
 }
 
 std::vector<std::uint8_t> status_bytes(std::int64_t instance_id, const std::string& scene = "scene.toml") {
@@ -34,9 +32,7 @@ std::vector<std::uint8_t> status_bytes(std::int64_t instance_id, const std::stri
   status.instance_id = instance_id;
   status.version = "0.1.0";
   status.scene = scene;
-  std::vector<std::uint8_t> bytes;
-  encode(status, bytes);
-  return bytes;
+  return encoded(status);
 }
 
 BodyWrench vertical_force(std::int32_t id, double force) {
@@ -115,15 +111,12 @@ TEST_F(BusMonitorTest, ShowsKnownMetacentres) {
   body.body_id = kHydrostaticBox;
   body.metacenters = {{{0.0, 0.0, 0.25}, {0.0, 0.0, 0.5}}};
   body.metacentric_heights = {0.75, kNan};
-  std::vector<std::uint8_t> bytes;
-  encode(BodiesHydrostatics{.id = {}, .bodies = {body}}, bytes);
-  monitor_.on_hydrostatics(bytes);
+  monitor_.on_hydrostatics(encoded(BodiesHydrostatics{.id = {}, .bodies = {body}}));
   json shown = snapshot(0.1)["bodies"][0];
   EXPECT_EQ(shown["m"], json({{0.0, 0.0, 0.25}, {0.0, 0.0, 0.5}}));
   EXPECT_EQ(shown["gm"], json({0.75, nullptr}));
   body.metacenters[1][2] = kNan;  // dry
-  encode(BodiesHydrostatics{.id = {}, .bodies = {body}}, bytes);
-  monitor_.on_hydrostatics(bytes);
+  monitor_.on_hydrostatics(encoded(BodiesHydrostatics{.id = {}, .bodies = {body}}));
   EXPECT_TRUE(snapshot(0.1)["bodies"][0]["m"].is_null());
 }
 
@@ -142,9 +135,7 @@ class BusMonitorLoads : public BusMonitorTest {
     loads_.water_velocity = {0.5, -0.25, 0.125};
   }
   static std::vector<std::uint8_t> bytes_of(const BodyLoads& loads) {
-    std::vector<std::uint8_t> bytes;
-    encode(BodiesLoads{.id = {0, 1, 1}, .bodies = {loads}}, bytes);
-    return bytes;
+    return encoded(BodiesLoads{.id = {0, 1, 1}, .bodies = {loads}});
   }
   bool shows_loads(double now = 0.1) { return snapshot(now)["bodies"][0].contains("loads"); }
 

@@ -8,6 +8,7 @@
 
 #include "messages/wire.h"
 #include "tests/support/build_paths.h"
+#include "tests/support/byte_vector.h"
 #include "tests/view/moving_bodies.h"
 #include "tests/view/page_test.h"
 #include "tests/view/running_view.h"
@@ -85,15 +86,14 @@ TEST_F(LivePageOfLoads, ChangesNothingForHostileLoads) {
   const std::string loads = "return buoyancyView.last.bodies.find((one) => one.id === 1).loads;";
   const nlohmann::json before = browser().run(loads);
   RawLcmSocket socket;
-  std::vector<std::uint8_t> bytes;
-  encode(BodiesLoads{.id = {}, .bodies = {BodyLoads{.body_id = 1, .immersion = 0.5}}}, bytes);
+  ByteVector bytes = encoded(BodiesLoads{.id = {}, .bodies = {BodyLoads{.body_id = 1, .immersion = 0.5}}});
   bytes.pop_back();
   socket.send("LOADS", bytes);
   bytes.assign(bytes.size(), 0xff);
   socket.send("LOADS", bytes);
   socket.send("LOADS", {});
-  encode(BodiesLoads{.id = {}, .bodies = {BodyLoads{.body_id = 77, .immersion = 0.5}}}, bytes);
-  socket.send("LOADS", bytes);
+  socket.send("LOADS",
+              encoded(BodiesLoads{.id = {}, .bodies = {BodyLoads{.body_id = 77, .immersion = 0.5}}}));
   browser().wait_until(
       "Object.values(buoyancyView.last.counts.malformed).reduce((sum, count) => sum + count) === 3");
   EXPECT_EQ(browser().run(loads), before);

@@ -7,6 +7,7 @@
 
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/contains.h"
 #include "tests/view/page_test.h"
 #include "tests/view/running_view.h"
@@ -57,11 +58,11 @@ TEST_F(LivePageOfTanks, ShowsConditionsReceivedOnBus) {
   ASSERT_NO_FATAL_FAILURE(open(subdivided_hull()));
   RawLcmSocket socket;
   const auto send = [&socket](double liquid_volume) {
-    socket.send(std::string(kConditionChannel), condition_bytes({.utime = 10,
-                                                                 .body_id = 1,
-                                                                 .kind = ConditionKind::kTank,
-                                                                 .index = 0,
-                                                                 .liquid_volume = liquid_volume}));
+    socket.send(std::string(kConditionChannel), encoded(ConditionChange{.utime = 10,
+                                                                        .body_id = 1,
+                                                                        .kind = ConditionKind::kTank,
+                                                                        .index = 0,
+                                                                        .liquid_volume = liquid_volume}));
   };
   const std::string level = "buoyancyView.scene.bodies.get(1).group.inside.tanks[0].level";
   send(9.0);

@@ -7,6 +7,7 @@
 
 #include "messages/sea_state.h"
 #include "tests/service/raw_lcm.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/scene_of.h"
 #include "tests/view/page_test.h"
 #include "tests/view/running_view.h"
@@ -34,14 +35,13 @@ class LivePageInWaves : public PageTest {
   }
 
   void send_request(std::int64_t utime, double lead_time) {
-    RawStates states;
-    states.utime = utime;
-    states.session_id = 1;
-    states.seq = ++seq_;
-    states.lead_time = lead_time;
-    states.bodies.resize(1);
-    states.bodies[0].position = {kBodiesAt[0], kBodiesAt[1], 1.5};
-    socket_.send("BUOYANCY_STATES", encode_states(states));
+    WrenchRequest request;
+    request.id = {.utime = utime, .session_id = 1, .seq = ++seq_};
+    request.lead_time = lead_time;
+    request.bodies = {{.body_id = 1,
+                       .position = {kBodiesAt[0], kBodiesAt[1], 1.5},
+                       .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0}}};
+    socket_.send("BUOYANCY_STATES", encoded(request));
   }
   // Waits until the picture is that of this time of the sea [s].
   static void wait_for_time(double t) {
@@ -50,9 +50,7 @@ class LivePageInWaves : public PageTest {
 
   void send_sea(SeaState state, std::int64_t utime) {
     state.utime = utime;
-    std::vector<std::uint8_t> bytes;
-    encode(state, bytes);
-    socket_.send(std::string(kSeaChannel), bytes);
+    socket_.send(std::string(kSeaChannel), encoded(state));
   }
 
   RawLcmSocket socket_;

@@ -12,6 +12,7 @@
 #include "engine/request_handler.h"
 #include "messages/conversions.h"
 #include "tests/support/build_paths.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/child_process.h"
 #include "tests/support/contains.h"
 #include "tests/support/csv.h"
@@ -101,12 +102,8 @@ std::vector<Row> read_rows(const std::string& path) {
 }
 
 BodyLoads loads_of(RequestHandler& handler, const WrenchRequest& request) {
-  std::vector<std::uint8_t> bytes;
-  encode(request, bytes);
-  handler.handle(bytes);
-  BodiesLoads loads;
-  EXPECT_FALSE(decode(handler.last_loads(), loads));
-  return loads.bodies.at(0);
+  handler.handle(encoded(request));
+  return decoded<BodiesLoads>(handler.last_loads()).bodies.at(0);
 }
 
 TEST_F(ReportPageOfLoads, StacksComputedLoadsAlongEveryAxis) {

@@ -11,6 +11,7 @@
 #include "messages/sea_state.h"
 #include "recording/event_log.h"
 #include "tests/support/build_paths.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/child_process.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
@@ -91,15 +92,7 @@ TEST_F(ReportPageInWaves, DrawsSurfaceOfSea) {
 
 TEST_F(ReportPageInWaves, DrawsEachReceivedSeaWhileItHolds) {
   const std::string received = "[water]\nlevel = 0.5\nwaves = \"received\"\n" + kCurrentOfPages + kBox;
-  std::vector<std::uint8_t> log;
-  auto add = [&log, number = std::int64_t{0}](std::int64_t utime, std::string_view channel,
-                                              const auto& message) mutable {
-    std::vector<std::uint8_t> bytes;
-    encode(message, bytes);
-    std::vector<std::uint8_t> event;
-    encode_event(number++, utime, channel, bytes, event);
-    log.insert(log.end(), event.begin(), event.end());
-  };
+  RecordedLog log;
   std::vector<SeaState> seas;
   for (const NamedWater& water : kSeasOfPages) {
     seas.push_back(to_sea_state(*scene_of(water.table + kBox).sea(), 7));
@@ -108,17 +101,16 @@ TEST_F(ReportPageInWaves, DrawsEachReceivedSeaWhileItHolds) {
   for (std::int64_t second = 0; second <= 40; ++second) {
     const std::int64_t utime = kTodayUtime + 1'000'000 * second;
     for (const SeaState& sea : seas) {
-      if (sea.utime == utime) add(utime, kSeaChannel, sea);
+      if (sea.utime == utime) log.add(utime, kSeaChannel, encoded(sea));
     }
     WrenchRequest request;
     request.id = {.utime = utime, .session_id = 1, .seq = second};
     request.bodies = {{.body_id = 1,
                        .position = {kBodiesAt[0], kBodiesAt[1], 1.5},
                        .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0}}};
-    add(utime, kStatesChannel, request);
+    log.add(utime, kStatesChannel, encoded(request));
   }
-  ASSERT_NO_FATAL_FAILURE(open_run(
-      received, directory_.write("run.lcmlog", {reinterpret_cast<const char*>(log.data()), log.size()})));
+  ASSERT_NO_FATAL_FAILURE(open_run(received, directory_.write("run.lcmlog", log.text())));
 
   go_to(kTodayUtime + 5'000'000);
   EXPECT_EQ(browser().run("const { scene } = buoyancy_report; return [scene.waves, scene.water.visible];"),

@@ -13,13 +13,13 @@
 
 #include "engine/request_handler.h"
 #include "messages/sea_state.h"
-#include "recording/event_log.h"
 #include "tests/engine/box_scene.h"
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/service/one_box_scene.h"
 #include "tests/support/contains.h"
 #include "tests/support/json.h"
+#include "tests/support/recorded_log.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
 #include "view/report/body_list.h"
@@ -46,37 +46,24 @@ class RunFileTest : public testing::Test {
     return read(directory_.write("run.csv", text));
   }
 
-  // Appends an event as lcm-logger records it.
-  void log(std::int64_t timestamp, std::string_view channel, Bytes bytes) {
-    std::vector<std::uint8_t> event;
-    encode_event(number_++, timestamp, channel, bytes, event);
-    log_.insert(log_.end(), event.begin(), event.end());
-  }
   void log_request(std::int64_t timestamp, const WrenchRequest& request) {
-    std::vector<std::uint8_t> bytes;
-    encode(request, bytes);
-    log(timestamp, kStatesChannel, bytes);
+    log_.add(timestamp, kStatesChannel, encoded(request));
   }
   void log_response(std::int64_t timestamp, const WrenchRequest& request) {
-    std::vector<std::uint8_t> bytes;
-    encode(request, bytes);
-    log(timestamp, kWrenchesChannel, handler_.handle(bytes));
+    log_.add(timestamp, kWrenchesChannel, handler_.handle(encoded(request)));
   }
-  Expected<RecordedRun> read_log() const {
-    return read(directory_.write("run.lcmlog", {reinterpret_cast<const char*>(log_.data()), log_.size()}));
-  }
+  Expected<RecordedRun> read_log() const { return read(directory_.write("run.lcmlog", log_.text())); }
 
   // A pose of the body on channel POSE of options_.
   void log_pose(std::int64_t timestamp, const bot_core::pose_t& pose) {
-    log(timestamp, "POSE", encoded_by_lcm(pose));
+    log_.add(timestamp, "POSE", encoded_by_lcm(pose));
   }
 
   TempDir directory_;
   RunFileOptions options_;
   Scene scene_ = scene_of(kOneBoxScene);
   RequestHandler handler_{scene_};
-  std::vector<std::uint8_t> log_;
-  std::int64_t number_ = 0;
+  RecordedLog log_;
 };
 
 TEST_F(RunFileTest, ComputesForcesOfPoses) {
@@ -219,11 +206,7 @@ class RunFileInWavesTest : public RunFileTest {
 
   // The forces that a request handler gives in the swell.
   double force_at(const WrenchRequest& request) {
-    std::vector<std::uint8_t> bytes;
-    encode(request, bytes);
-    WrenchResponse response;
-    EXPECT_FALSE(decode(in_swell_.handle(bytes), response));
-    return response.bodies.at(0).force[0];
+    return decoded<WrenchResponse>(in_swell_.handle(encoded(request))).bodies.at(0).force[0];
   }
 
   Scene swell_ = scene_of(box_in(kSwell));
@@ -246,11 +229,10 @@ TEST_F(RunFileInWavesTest, ReceivesTheSeaOfTheLog) {
   scene_ = scene_of(box_in("\"received\""));
   SeaState sea = to_sea_state(*swell_.sea(), 1);
   sea.utime = 900'000;
-  std::vector<std::uint8_t> bytes;
-  encode(sea, bytes);
-  log(1, kSeaChannel, bytes);
+  ByteVector bytes = encoded(sea);
+  log_.add(1, kSeaChannel, bytes);
   bytes.pop_back();
-  log(2, kSeaChannel, bytes);
+  log_.add(2, kSeaChannel, bytes);
   log_request(3, request_at(500, 0.1));
   log_request(4, request_at(1'000, 0.1));
   const RecordedRun run = read_log().value();
@@ -348,7 +330,7 @@ TEST_F(RunFileTest, KeepsDurationOfParallelAndReusedSessions) {
     log_request(1'000 * i + 7, one);
   }
   EXPECT_NEAR(read_log().value().bodies[0].rows.back()[kTime], 0.099, 1e-4);
-  log_.clear();
+  log_ = {};
   for (const std::int64_t start : {0, 5'000'000}) {
     for (std::int64_t seq = 0; seq < 3'000; ++seq) {
       log_request(start + 1'000 * seq, request_at(seq, 0.0));
@@ -428,7 +410,7 @@ TEST_F(RunFileTest, MatchesPoseResponsesByBodyAndTime) {
       const auto bytes = adapter.make_request(0, encoded_by_lcm(pose));
       return std::vector<std::uint8_t>(bytes->begin(), bytes->end());
     }();
-    log(1'000 * i + 250, kWrenchesChannel, handler_.handle(request));
+    log_.add(1'000 * i + 250, kWrenchesChannel, handler_.handle(request));
   }
   const RecordedRun run = read_log().value();
   ASSERT_EQ(run.bodies[0].rows.size(), 10);
@@ -446,8 +428,8 @@ TEST_F(RunFileTest, ComputesMissingPartsOfPoseResponses) {
   log_pose(1'000, upright_pose(0.0, 1'000));
   std::vector<std::uint8_t> bytes;
   encode_six_axis_force_torque(1'000, {1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}, bytes);
-  log(1'400, "FORCE", bytes);
-  log(1'500, "POSE", bytes);
+  log_.add(1'400, "FORCE", bytes);
+  log_.add(1'500, "POSE", bytes);
   const RecordedRun run = read_log().value();
   ASSERT_EQ(run.bodies[0].rows.size(), 2);
   EXPECT_EQ(run.computed, 1);

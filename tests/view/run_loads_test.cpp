@@ -11,9 +11,9 @@
 #include "engine/request_handler.h"
 #include "messages/conversions.h"
 #include "messages/sea_state.h"
-#include "recording/event_log.h"
 #include "tests/support/contains.h"
 #include "tests/support/json.h"
+#include "tests/support/recorded_log.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
 #include "tests/view/moving_bodies.h"
@@ -41,22 +41,16 @@ class RunLoadsTest : public testing::Test {
     handle(request, with_response, with_loads);
   }
   void handle(const WrenchRequest& request, bool with_response, bool with_loads) {
-    std::vector<std::uint8_t> bytes;
-    encode(request, bytes);
+    const ByteVector bytes = encoded(request);
     log(kStatesChannel, bytes);
     requests_.push_back(request);
     const Bytes response = handler_.handle(bytes);
-    ASSERT_FALSE(decode(response, responses_.emplace_back()));
-    ASSERT_FALSE(decode(handler_.last_loads(), loads_.emplace_back()));
+    responses_.push_back(decoded<WrenchResponse>(response));
+    loads_.push_back(decoded<BodiesLoads>(handler_.last_loads()));
     if (with_response) log(kWrenchesChannel, response);
     if (with_loads) log(kLoadsChannel, handler_.last_loads());
   }
-  void log(std::string_view channel, Bytes bytes) {
-    std::vector<std::uint8_t> event;
-    encode_event(number_, kNow + number_, channel, bytes, event);
-    ++number_;
-    log_.insert(log_.end(), event.begin(), event.end());
-  }
+  void log(std::string_view channel, Bytes bytes) { log_.add(kNow + log_.events(), channel, bytes); }
 
   // The requests as a CSV file without responses.
   std::string csv(bool with_velocities = true) const {
@@ -84,9 +78,7 @@ class RunLoadsTest : public testing::Test {
     return text;
   }
   RecordedRun read_csv(const std::string& text) const { return read("run.csv", text); }
-  RecordedRun read_log() const {
-    return read("run.lcmlog", {reinterpret_cast<const char*>(log_.data()), log_.size()});
-  }
+  RecordedRun read_log() const { return read("run.lcmlog", log_.text()); }
   RecordedRun read(const std::string& name, const std::string& contents) const {
     return read_run(directory_.write(name, contents), scene_, 10'000, {}).value();
   }
@@ -136,8 +128,7 @@ class RunLoadsTest : public testing::Test {
   std::vector<WrenchRequest> requests_;
   std::vector<WrenchResponse> responses_;
   std::vector<BodiesLoads> loads_;
-  std::vector<std::uint8_t> log_;
-  std::int64_t number_ = 0;
+  RecordedLog log_;
 };
 
 class RunLoadsInWaves : public RunLoadsTest {
@@ -151,10 +142,9 @@ class RunLoadsInReceivedSea : public RunLoadsTest {
   RunLoadsInReceivedSea() : RunLoadsTest(moving_bodies("waves = \"received\"\n")) {}
 
   void receive_sea(const std::string& waves) {
-    std::vector<std::uint8_t> bytes;
     SeaState state = to_sea_state(*scene_of(moving_bodies(waves)).sea(), 7);
     state.utime = kNow;
-    encode(state, bytes);
+    const ByteVector bytes = encoded(state);
     log(kSeaChannel, bytes);
     ASSERT_TRUE(handler_.receive_sea(bytes));
   }
@@ -199,9 +189,7 @@ TEST_F(RunLoadsTest, TakesLoadsOfLog) {
   };
   handle(true, false);
   change(loads_.back());
-  std::vector<std::uint8_t> bytes;
-  encode(loads_.back(), bytes);
-  log(kLoadsChannel, bytes);
+  log(kLoadsChannel, encoded(loads_.back()));
   const RecordedRun run = read_log();
   expect_service_loads(run);
   EXPECT_EQ(run.bodies[0].loads[2][kImmersion], 0.75) << "as recorded";
@@ -218,13 +206,11 @@ TEST_F(RunLoadsTest, ComputesLoadsThatLogHasNotForRequestsWithoutResponse) {
 
 TEST_F(RunLoadsTest, SkipsMalformedAndForeignLoads) {
   handle(true, false);
-  std::vector<std::uint8_t> bytes;
   BodiesLoads other = loads_[0];
   other.id.session_id = 77;
   other.bodies[0].immersion = 0.125;
-  encode(other, bytes);
-  log(kLoadsChannel, bytes);
-  encode(loads_[0], bytes);
+  log(kLoadsChannel, encoded(other));
+  ByteVector bytes = encoded(loads_[0]);
   bytes.pop_back();
   log(kLoadsChannel, bytes);
   const RecordedRun run = read_log();
@@ -264,10 +250,7 @@ TEST_F(RunLoadsTest, TakesBodiesWithoutVelocitiesAsResting) {
 
 TEST_F(RunLoadsTest, KeepsLoadsWithTheirRowsWhenDecimating) {
   for (int i = 0; i < 2'000; ++i) handle(true, i % 2 == 0);
-  const RecordedRun run =
-      read_run(directory_.write("run.lcmlog", {reinterpret_cast<const char*>(log_.data()), log_.size()}),
-               scene_, 800, {})
-          .value();
+  const RecordedRun run = read_run(directory_.write("run.lcmlog", log_.text()), scene_, 800, {}).value();
   const BodyRun& body = run.bodies[0];
   ASSERT_LT(body.rows.size(), 300U);
   ASSERT_EQ(body.loads.size(), body.rows.size());

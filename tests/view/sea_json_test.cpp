@@ -8,7 +8,9 @@
 
 #include "messages/request.h"
 #include "recording/event_log.h"
+#include "tests/support/byte_vector.h"
 #include "tests/support/json.h"
+#include "tests/support/recorded_log.h"
 #include "tests/support/scene_of.h"
 #include "tests/support/temp_dir.h"
 #include "view/common/scene_model.h"
@@ -91,20 +93,11 @@ TEST(RunFileInWaves, KeepsTimeOfSeaWithLeadTime) {
   WrenchResponse response;
   response.id = request.id;
   response.bodies = {{.body_id = 1}};
-  std::vector<std::uint8_t> bytes;
-  std::vector<std::uint8_t> log;
-  const auto record = [&](std::string_view channel) {
-    std::vector<std::uint8_t> event;
-    encode_event(0, 0, channel, bytes, event);
-    log.insert(log.end(), event.begin(), event.end());
-  };
-  encode(request, bytes);
-  record(kStatesChannel);
-  encode(response, bytes);
-  record(kWrenchesChannel);
+  RecordedLog log;
+  log.add(0, kStatesChannel, encoded(request));
+  log.add(0, kWrenchesChannel, encoded(response));
   const TempDir directory;
-  const auto run = read_run(
-      directory.write("run.lcmlog", {reinterpret_cast<const char*>(log.data()), log.size()}), scene, 10, {});
+  const auto run = read_run(directory.write("run.lcmlog", log.text()), scene, 10, {});
   ASSERT_TRUE(run) << run.error().message();
   ASSERT_EQ(run->bodies[0].rows.size(), 1U);
   EXPECT_EQ(run->bodies[0].rows[0][kSeaTime], 2.25);

@@ -8,8 +8,8 @@
 
 #include "messages/condition_change.h"
 #include "messages/request.h"
-#include "recording/event_log.h"
 #include "tests/service/one_box_scene.h"
+#include "tests/support/recorded_log.h"
 #include "tests/support/temp_dir.h"
 
 namespace buoyancy::view {
@@ -101,37 +101,23 @@ inline std::string write_subdivided_hull(const TempDir& directory) {
   return directory.write("hull.toml", subdivided_hull("mesh = \"ring.obj\""));
 }
 
-inline std::vector<std::uint8_t> condition_bytes(const ConditionChange& change) {
-  std::vector<std::uint8_t> bytes;
-  encode(change, bytes);
-  return bytes;
-}
-
 // A log as lcm-logger records it, of requests about body 1 at rest, without responses.
 class ConditionLog {
  public:
-  void add(std::string_view channel, Bytes bytes) {
-    std::vector<std::uint8_t> event;
-    encode_event(events_, events_, channel, bytes, event);
-    ++events_;
-    text_.append(reinterpret_cast<const char*>(event.data()), event.size());
-  }
+  void add(std::string_view channel, Bytes bytes) { log_.add(log_.events(), channel, bytes); }
   void add_request(std::int64_t utime, double height) {
     WrenchRequest request;
     request.id = {.utime = utime, .session_id = 1, .seq = ++requests_};
     request.bodies.push_back(
         {.body_id = 1, .position = {0.0, 0.0, height}, .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0}});
-    std::vector<std::uint8_t> bytes;
-    encode(request, bytes);
-    add(kStatesChannel, bytes);
+    add(kStatesChannel, encoded(request));
   }
-  void add_condition(const ConditionChange& change) { add(kConditionChannel, condition_bytes(change)); }
+  void add_condition(const ConditionChange& change) { add(kConditionChannel, encoded(change)); }
 
-  const std::string& text() const { return text_; }
+  const std::string& text() const { return log_.text(); }
 
  private:
-  std::string text_;
-  std::int64_t events_ = 0;
+  RecordedLog log_;
   std::int64_t requests_ = 0;
 };
 

@@ -195,7 +195,7 @@ TEST(ViewProgram, UsesConfiguredChannels) {
                          kScene);
   RawLcmSocket socket;
   send_request(socket, one_body(7, 1, 0.0));  // on a channel that it does not receive
-  socket.send("S.*", encode_states(one_body(8, 1, 0.0)));
+  socket.send("S.*", encoded(one_body(8, 1, 0.0)));
   const json snapshot =
       wait_for_snapshot(events, [](const json& now) { return now["counts"]["responses"] == 1; });
   EXPECT_EQ(snapshot["counts"]["requests"], 1);
