@@ -16,9 +16,9 @@
 #include "geometry/shapes.h"
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/triangle_clip.h"
-#include "tests/hydrostatics/ball.h"
-#include "tests/hydrostatics/exact_oracle.h"
-#include "tests/hydrostatics/rational.h"
+#include "tests/truth/ball.h"
+#include "tests/truth/exact_oracle.h"
+#include "tests/truth/rational.h"
 #include "unit_water.h"
 
 namespace buoyancy::bench {

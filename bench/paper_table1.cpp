@@ -16,7 +16,7 @@
 #include "memory_read_baseline.h"
 #include "plain_exact.h"
 #include "pose_sweep.h"
-#include "tests/hydrostatics/exact_oracle.h"
+#include "tests/truth/exact_oracle.h"
 #include "unit_water.h"
 
 namespace buoyancy::bench {

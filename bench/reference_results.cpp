@@ -8,7 +8,7 @@
 #include "base/format.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "median.h"
-#include "tests/hydrostatics/exact_oracle.h"
+#include "tests/truth/exact_oracle.h"
 #include "unit_water.h"
 
 namespace buoyancy::bench {

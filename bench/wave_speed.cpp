@@ -25,7 +25,7 @@
 #include "geometry/shapes.h"
 #include "median.h"
 #include "pose_sweep.h"
-#include "tests/wave_loads/reference_load.h"
+#include "tests/truth/reference_load.h"
 #include "wave_loads/wave_surface_methods.h"
 #include "wave_measurement.h"
 

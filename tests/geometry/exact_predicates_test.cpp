@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "tests/hydrostatics/rational.h"
+#include "tests/truth/rational.h"
 
 namespace buoyancy {
 namespace {

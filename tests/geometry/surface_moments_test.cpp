@@ -9,7 +9,7 @@
 #include "geometry/pairwise_sum.h"
 #include "geometry/shapes.h"
 #include "tests/geometry/sample_meshes.h"
-#include "tests/hydrostatics/rational.h"
+#include "tests/truth/rational.h"
 
 namespace buoyancy {
 namespace {

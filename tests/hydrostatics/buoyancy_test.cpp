@@ -8,12 +8,12 @@
 #include "geometry/shapes.h"
 #include "hydrostatics/immersion.h"
 #include "hydrostatics/wetted_tree_sum.h"
-#include "tests/hydrostatics/exact_oracle.h"
 #include "tests/hydrostatics/forced_target.h"
 #include "tests/hydrostatics/random_poses.h"
-#include "tests/hydrostatics/rational.h"
 #include "tests/hydrostatics/test_meshes.h"
 #include "tests/support/allocation_count.h"
+#include "tests/truth/exact_oracle.h"
+#include "tests/truth/rational.h"
 
 namespace buoyancy {
 namespace {

@@ -10,10 +10,10 @@
 
 #include "geometry/shapes.h"
 #include "hydrostatics/buoyancy.h"
-#include "tests/hydrostatics/exact_oracle.h"
 #include "tests/hydrostatics/random_poses.h"
-#include "tests/hydrostatics/rational.h"
 #include "tests/hydrostatics/test_meshes.h"
+#include "tests/truth/exact_oracle.h"
+#include "tests/truth/rational.h"
 
 namespace buoyancy {
 namespace {

@@ -1,5 +1,5 @@
 // Tests of the oracle itself: closed forms hold in it without any error, and balls enclose its results.
-#include "tests/hydrostatics/exact_oracle.h"
+#include "tests/truth/exact_oracle.h"
 
 #include <algorithm>
 #include <array>
@@ -10,10 +10,10 @@
 
 #include "geometry/shapes.h"
 #include "hydrostatics/hydrostatic_mesh.h"
-#include "tests/hydrostatics/ball.h"
 #include "tests/hydrostatics/random_poses.h"
-#include "tests/hydrostatics/rational.h"
 #include "tests/hydrostatics/test_meshes.h"
+#include "tests/truth/ball.h"
+#include "tests/truth/rational.h"
 
 namespace buoyancy {
 namespace {

@@ -17,11 +17,11 @@
 #include "hydrostatics/solver.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/agreement.h"
-#include "tests/hydrostatics/exact_oracle.h"
 #include "tests/hydrostatics/forced_target.h"
 #include "tests/hydrostatics/random_poses.h"
-#include "tests/hydrostatics/rational.h"
 #include "tests/hydrostatics/test_meshes.h"
+#include "tests/truth/exact_oracle.h"
+#include "tests/truth/rational.h"
 
 namespace buoyancy {
 namespace {

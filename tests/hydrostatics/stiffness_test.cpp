@@ -5,8 +5,8 @@
 #include "geometry/shapes.h"
 #include "hydrostatics/hydrostatics.h"
 #include "tests/hydrostatics/random_poses.h"
-#include "tests/hydrostatics/stiffness_autodiff.h"
 #include "tests/hydrostatics/test_meshes.h"
+#include "tests/truth/stiffness_autodiff.h"
 
 namespace buoyancy {
 namespace {

@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "geometry/shapes.h"
-#include "tests/hydrostatics/ball.h"
 #include "tests/hydrostatics/climb.h"
 #include "tests/hydrostatics/test_meshes.h"
+#include "tests/truth/ball.h"
 
 namespace buoyancy {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/hydrostatics/exact_oracle.h"
 #include "tests/hydrostatics/random_poses.h"
-#include "tests/hydrostatics/rational.h"
+#include "tests/truth/exact_oracle.h"
+#include "tests/truth/rational.h"
 
 namespace buoyancy {
 namespace {

@@ -10,11 +10,11 @@
 #include "geometry/shapes.h"
 #include "hydrostatics/displacement_moments.h"
 #include "hydrostatics/hydrostatic_mesh.h"
-#include "tests/hydrostatics/exact_oracle.h"
 #include "tests/hydrostatics/random_poses.h"
-#include "tests/hydrostatics/rational.h"
 #include "tests/hydrostatics/test_meshes.h"
-#include "tests/hydrostatics/wetted_moments_reference.h"
+#include "tests/truth/exact_oracle.h"
+#include "tests/truth/rational.h"
+#include "tests/truth/wetted_moments_reference.h"
 
 namespace buoyancy {
 namespace {

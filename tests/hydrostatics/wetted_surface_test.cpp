@@ -13,9 +13,9 @@
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/agreement.h"
-#include "tests/hydrostatics/exact_oracle.h"
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/hydrostatics/test_meshes.h"
+#include "tests/truth/exact_oracle.h"
 
 namespace buoyancy {
 namespace {

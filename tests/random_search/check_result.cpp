@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tests/hydrostatics/truth.h"
+#include "tests/truth/truth.h"
 
 namespace buoyancy {
 namespace {

@@ -16,7 +16,7 @@
 #include "tests/random_search/wave_search.h"
 #include "tests/stress/stress_case.h"
 #include "tests/support/temp_dir.h"
-#include "tests/wave_loads/reference_load.h"
+#include "tests/truth/reference_load.h"
 #include "waves/sea_snapshot.h"
 
 namespace buoyancy {

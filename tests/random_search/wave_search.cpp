@@ -13,7 +13,7 @@
 
 #include "base/format.h"
 #include "hydrostatics/wetted_tree_sum.h"
-#include "tests/wave_loads/reference_load.h"
+#include "tests/truth/reference_load.h"
 #include "waves/sea_snapshot.h"
 
 namespace buoyancy {

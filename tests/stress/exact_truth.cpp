@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "hydrostatics/triangle_clip.h"
-#include "tests/hydrostatics/exact_oracle.h"
-#include "tests/hydrostatics/rational.h"
+#include "tests/truth/exact_oracle.h"
+#include "tests/truth/rational.h"
 
 namespace buoyancy {
 

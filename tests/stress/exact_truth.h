@@ -4,9 +4,9 @@
 #include <limits>
 #include <string>
 
-#include "tests/hydrostatics/truth.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"
+#include "tests/truth/truth.h"
 
 namespace buoyancy {
 

@@ -10,10 +10,10 @@
 
 #include "hydrostatics/hydrostatics.h"
 #include "hydrostatics/wetted_moments.h"
-#include "tests/hydrostatics/stiffness_autodiff.h"
-#include "tests/hydrostatics/wetted_moments_reference.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"
+#include "tests/truth/stiffness_autodiff.h"
+#include "tests/truth/wetted_moments_reference.h"
 
 namespace buoyancy {
 namespace {

@@ -18,7 +18,7 @@
 #include "tests/hydrostatics/test_meshes.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"
-#include "tests/wave_loads/reference_load.h"
+#include "tests/truth/reference_load.h"
 #include "wave_loads/wave_load.h"
 
 namespace buoyancy {

@@ -6,7 +6,7 @@
 
 #include "geometry/shapes.h"
 #include "tests/hydrostatics/test_meshes.h"
-#include "tests/wave_loads/reference_load.h"
+#include "tests/truth/reference_load.h"
 #include "wave_loads/wave_load.h"
 #include "wave_loads/wave_surface_methods.h"
 

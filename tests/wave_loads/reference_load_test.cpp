@@ -1,4 +1,4 @@
-#include "tests/wave_loads/reference_load.h"
+#include "tests/truth/reference_load.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "tests/hydrostatics/wetted_moments_reference.h"
+#include "tests/truth/wetted_moments_reference.h"
 
 #include "hydrostatics/triangle_clip.h"
 

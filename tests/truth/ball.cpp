@@ -1,9 +1,9 @@
-#include "tests/hydrostatics/ball.h"
+#include "tests/truth/ball.h"
 
 #include <cmath>
 #include <optional>
 
-#include "tests/hydrostatics/exact_oracle-inl.h"
+#include "tests/truth/exact_oracle-inl.h"
 
 namespace buoyancy {
 

@@ -4,7 +4,7 @@
 
 #include "hydrostatics/hydrostatic_mesh.h"
 #include "hydrostatics/water_plane.h"
-#include "tests/hydrostatics/dual.h"
+#include "tests/truth/dual.h"
 
 namespace buoyancy {
 

@@ -1,9 +1,9 @@
-#include "tests/hydrostatics/truth.h"
+#include "tests/truth/truth.h"
 
 #include <optional>
 #include <utility>
 
-#include "tests/hydrostatics/ball.h"
+#include "tests/truth/ball.h"
 
 namespace buoyancy {
 namespace {

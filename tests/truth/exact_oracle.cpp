@@ -1,7 +1,7 @@
-#include "tests/hydrostatics/exact_oracle.h"
+#include "tests/truth/exact_oracle.h"
 
-#include "tests/hydrostatics/exact_oracle-inl.h"
-#include "tests/hydrostatics/rational.h"
+#include "tests/truth/exact_oracle-inl.h"
+#include "tests/truth/rational.h"
 
 namespace buoyancy {
 

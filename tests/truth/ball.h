@@ -12,8 +12,8 @@
 
 #include <Eigen/Core>
 
-#include "tests/hydrostatics/exact_oracle.h"
-#include "tests/hydrostatics/rational.h"
+#include "tests/truth/exact_oracle.h"
+#include "tests/truth/rational.h"
 
 namespace buoyancy {
 

@@ -6,7 +6,7 @@
 
 #include "geometry/pairwise_sum.h"
 #include "hydrostatics/triangle_clip.h"
-#include "tests/hydrostatics/exact_oracle.h"
+#include "tests/truth/exact_oracle.h"
 
 namespace buoyancy {
 

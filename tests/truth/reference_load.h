@@ -10,7 +10,7 @@
 #include <cstdint>
 
 #include "geometry/triangle_mesh.h"
-#include "tests/wave_loads/reference_sea.h"
+#include "tests/truth/reference_sea.h"
 
 namespace buoyancy {
 

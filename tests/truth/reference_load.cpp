@@ -1,4 +1,4 @@
-#include "tests/wave_loads/reference_load.h"
+#include "tests/truth/reference_load.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include <Eigen/Geometry>
 
-#include "tests/wave_loads/reference_elements.h"
+#include "tests/truth/reference_elements.h"
 
 namespace buoyancy {
 namespace reference {

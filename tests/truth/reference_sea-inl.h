@@ -15,7 +15,7 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "tests/wave_loads/reference_sea.h"
+#include "tests/truth/reference_sea.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace buoyancy {

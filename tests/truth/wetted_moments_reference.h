@@ -7,8 +7,8 @@
 #include "geometry/surface_moments.h"
 #include "geometry/triangle_mesh.h"
 #include "hydrostatics/displacement_moments.h"
-#include "tests/hydrostatics/dual.h"
-#include "tests/hydrostatics/rational.h"
+#include "tests/truth/dual.h"
+#include "tests/truth/rational.h"
 
 namespace buoyancy {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/vec3.h"
-#include "tests/wave_loads/reference_sea.h"
+#include "tests/truth/reference_sea.h"
 
 namespace buoyancy::reference {
 

@@ -1,10 +1,10 @@
-#include "tests/hydrostatics/stiffness_autodiff.h"
+#include "tests/truth/stiffness_autodiff.h"
 
 #include <algorithm>
 #include <limits>
 
 #include "hydrostatics/displacement_moments.h"
-#include "tests/hydrostatics/wetted_moments_reference.h"
+#include "tests/truth/wetted_moments_reference.h"
 
 namespace buoyancy {
 

@@ -1,4 +1,4 @@
-#include "tests/hydrostatics/rational.h"
+#include "tests/truth/rational.h"
 
 #include <ostream>
 #include <vector>

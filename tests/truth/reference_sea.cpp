@@ -1,4 +1,4 @@
-#include "tests/wave_loads/reference_sea.h"
+#include "tests/truth/reference_sea.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 
 #define HWY_BROKEN_EMU128 1
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "tests/wave_loads/reference_sea.cpp"
+#define HWY_TARGET_INCLUDE "tests/truth/reference_sea.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "tests/wave_loads/reference_sea-inl.h"
+#include "tests/truth/reference_sea-inl.h"
 
 #if HWY_ONCE
 namespace buoyancy {
