@@ -1,12 +1,11 @@
 // random_search: searches for a case that violates a rule.
 //
-//   random_search [--waves | --motion | --flotation] [--cases N] [--seed S] [--case K] [--record DIRECTORY]
-//                 [--jobs J] [--table]
+//   random_search [--waves | --motion | --flotation] [--cases N] [--first K] [--seed S] [--case K] [--jobs J]
+//                 [--table]
 //
-// Resumes where the seed's last run stopped, until N cases are done; Ctrl-C stops between blocks without
-// losing results. Violations are printed with all that is known about their cases. With --case, only this
-// case is evaluated and printed. The last line summarizes all seeds of the record. Exit status: 0 if there is
-// no violation; 1 on a violation, in this run or earlier; 2 on invalid arguments.
+// Evaluates N cases from the first on; Ctrl-C stops between blocks without losing results. Violations are
+// printed with all that is known about their cases. With --case, only this case is evaluated and printed. The
+// last line is a summary. Exit status: 0 if there is no violation; 1 on a violation; 2 on invalid arguments.
 #include <algorithm>
 #include <array>
 #include <csignal>
@@ -53,22 +52,23 @@ int main(int argc, char** argv) {
   const std::array searches{still_water_search(), wave_search(), motion_search(), flotation_search()};
   std::array<bool, 4> chosen{};
   std::int64_t cases = 20'000;
+  std::int64_t first = 0;
   std::uint64_t seed = 1;
   std::int64_t single = -1;
-  std::filesystem::path record = "build/random_search";
   unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
   bool table = false;
   ToolCommandLine command_line(searches[0].description + ".", "random_search");
   for (std::size_t i = 1; i < searches.size(); ++i) {
     command_line.add_flag("--" + searches[i].name, chosen[i], searches[i].description + ", instead");
   }
-  command_line.add_positive("--cases", cases, "Total number of cases of the seed, including earlier runs");
+  constexpr std::int64_t kMaxCase = 1'000'000'000'000;
+  command_line.add_positive("--cases", cases, "Number of cases");
+  command_line.add_number("--first", first, std::int64_t{0}, kMaxCase,
+                          "First case, for a run that continues another");
   command_line.add_option("--seed", seed, "Seed of the random cases");
-  command_line.add_number("--case", single, std::int64_t{0}, std::int64_t{1'000'000'000'000},
-                          "Evaluate and print this case alone");
-  command_line.add_option("--record", record, "Directory of the results so far");
+  command_line.add_number("--case", single, std::int64_t{0}, kMaxCase, "Evaluate and print this case alone");
   command_line.add_number("--jobs", jobs, 1U, 1024U, "Threads");
-  command_line.add_flag("--table", table, "Print the figures of all seeds as a Markdown table");
+  command_line.add_flag("--table", table, "Print the figures as a Markdown table");
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
   if (std::ranges::count(chosen, true) > 1) {
     return report_usage_error({"--waves, --motion, --flotation", "given together", "one of them", "", ""});
@@ -81,30 +81,25 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, stop);
   std::signal(SIGTERM, stop);
 
-  Expected<SearchStats> stats = search.load(record, seed);
-  if (!stats) return report_usage_error(stats.error());
+  SearchStats stats;
   ProgressBar progress("cases");
-  const std::int64_t before = stats->cases;
   const auto whole_units = [&](std::int64_t count) {
     return (count + search.unit - 1) / search.unit * search.unit;
   };
+  first = whole_units(first);
   const std::int64_t block_size = whole_units(std::max<std::int64_t>(kBlock, search.unit * 2 * jobs));
-  while (stats->cases < cases && stop_requested == 0) {
-    const std::int64_t count = std::min(block_size, whole_units(cases - stats->cases));
-    const SearchStats block = search.run(seed, stats->cases, stats->cases + count, jobs);
-    *stats += block;
-    if (const Expected<void> saved = search.save(record, seed, *stats); !saved) {
-      return report_usage_error(saved.error());
-    }
+  while (stats.cases < cases && stop_requested == 0) {
+    const std::int64_t begin = first + stats.cases;
+    const SearchStats block =
+        search.run(seed, begin, begin + std::min(block_size, whole_units(cases - stats.cases)), jobs);
+    stats += block;
     if (!block.failures.empty()) progress.clear();
     for (const SearchFailure& failure : block.failures) print_case(search, seed, failure.number);
-    progress.update(stats->cases - before, cases - before, stats->cases - before);
+    progress.update(stats.cases, cases, stats.cases);
   }
   progress.clear();
-  const Expected<SearchStats> all = search.load_all(record);
-  if (!all) return report_usage_error(all.error());
-  if (table) std::printf("%s", search.table(*all).c_str());
-  std::printf("seed %llu: %s\nall seeds: %s\n", static_cast<unsigned long long>(seed),
-              search.summary(*stats).c_str(), search.summary(*all).c_str());
-  return all->failed_cases > 0 ? kViolationFound : 0;
+  if (table) std::printf("%s", search.table(stats).c_str());
+  std::printf("seed %llu, from case %lld: %s\n", static_cast<unsigned long long>(seed),
+              static_cast<long long>(first), search.summary(stats).c_str());
+  return stats.failed_cases > 0 ? kViolationFound : 0;
 }

@@ -1,7 +1,6 @@
 // Tests of the random searches: cases of the product have no violation, runs add up, and what is wrong is
 // found. Tests of their oracle: its estimates of its own errors hold.
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <ostream>
 #include <string>
@@ -15,7 +14,6 @@
 #include "tests/random_search/shrink.h"
 #include "tests/random_search/wave_search.h"
 #include "tests/stress/stress_case.h"
-#include "tests/support/temp_dir.h"
 #include "tests/truth/reference_load.h"
 #include "waves/sea_snapshot.h"
 
@@ -69,30 +67,6 @@ TEST_P(RandomSearches, AreReproducibleAcrossRunsAndThreads) {
   const SearchFailure again = search.replay(4, search.unit);
   EXPECT_TRUE(again.violations.empty());
   EXPECT_FALSE(again.text.empty());
-}
-
-TEST_P(RandomSearches, SaveRecordsAndAddSeeds) {
-  const RandomSearch& search = GetParam().search;
-  const TempDir directory;
-  EXPECT_EQ(search.load(directory.path(), 5)->cases, 0);
-  SearchStats found = search.run(5, 0, search.unit, 1);
-  found.add_violations(3, "a case\n", {"one violation", "another"});
-  ASSERT_TRUE(search.save(directory.path(), 5, found));
-  ASSERT_TRUE(search.save(directory.path(), 16, found));
-  directory.write("other-seed-5.json", "no record of this search");
-  const Expected<SearchStats> again = search.load(directory.path(), 5);
-  ASSERT_TRUE(again);
-  EXPECT_EQ(search.summary(*again), search.summary(found));
-  EXPECT_EQ(search.table(*again), search.table(found));
-  ASSERT_EQ(again->failures.size(), 1U);
-  EXPECT_EQ(again->failures[0].text, "a case\n");
-  EXPECT_EQ(again->failures[0].violations.size(), 2U);
-  const Expected<SearchStats> all = search.load_all(directory.path());
-  EXPECT_EQ(all->cases, 2 * found.cases);
-  EXPECT_EQ(all->failed_cases, 2);
-  std::filesystem::resize_file(
-      directory.path() / ((search.name.empty() ? "" : search.name + "-") + "seed-16.json"), 9);
-  EXPECT_FALSE(search.load_all(directory.path()));
 }
 
 TEST(SearchFigures, HaveAMedianRatio) {

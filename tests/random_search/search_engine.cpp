@@ -5,11 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <thread>
-
-#include <nlohmann/json.hpp>
 
 namespace buoyancy {
 namespace {
@@ -18,15 +14,6 @@ constexpr std::size_t kMaxFailures = 100;
 constexpr double kBinsPerDecade = 20.0;
 constexpr double kLastBin = 199.0;
 
-std::filesystem::path record_of(const std::filesystem::path& directory, const std::string& prefix,
-                                std::uint64_t seed) {
-  return directory / (prefix + std::to_string(seed) + ".json");
-}
-
-std::string prefix_of(const RandomSearch& search) {
-  return search.name.empty() ? "seed-" : search.name + "-seed-";
-}
-
 std::string row_of(const std::string& name, const std::vector<std::string>& cells) {
   std::string text = "| " + name + " |";
   for (const std::string& cell : cells) text += cell.empty() ? " |" : " " + cell + " |";
@@ -34,11 +21,6 @@ std::string row_of(const std::string& name, const std::vector<std::string>& cell
 }
 
 }  // namespace
-
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Largest, value, at)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SearchFigures, counts, largest, ratios)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SearchFailure, number, text, violations)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SearchStats, cases, failed_cases, rows, failures)
 
 std::int64_t SearchFigures::count(const std::string& name) const {
   const auto found = counts.find(name);
@@ -140,50 +122,6 @@ std::string RandomSearch::summary(const SearchStats& stats) const {
     separator = ", ";
   }
   return text;
-}
-
-Expected<SearchStats> RandomSearch::load(const std::filesystem::path& directory, std::uint64_t seed) const {
-  const std::filesystem::path path = record_of(directory, prefix_of(*this), seed);
-  if (!std::filesystem::exists(path)) return SearchStats{};
-  std::ifstream file(path);
-  try {
-    return nlohmann::json::parse(file).get<SearchStats>();
-  } catch (const nlohmann::json::exception&) {
-    return make_error({path.string(), "is not a record of a search", "a file written by an earlier run",
-                       "another version or another program wrote it", "Remove the file"});
-  }
-}
-
-Expected<SearchStats> RandomSearch::load_all(const std::filesystem::path& directory) const {
-  SearchStats total;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
-    const std::string file = entry.path().stem().string();
-    const std::string prefix = prefix_of(*this);
-    if (!file.starts_with(prefix) || entry.path().extension() != ".json") continue;
-    const Expected<SearchStats> stats =
-        load(directory, std::strtoull(file.c_str() + prefix.size(), nullptr, 10));
-    if (!stats) return stats;
-    total += *stats;
-  }
-  return total;
-}
-
-Expected<void> RandomSearch::save(const std::filesystem::path& directory, std::uint64_t seed,
-                                  const SearchStats& stats) const {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  const std::filesystem::path path = record_of(directory, prefix_of(*this), seed);
-  const std::filesystem::path fresh = path.string() + ".new";
-  std::ofstream file(fresh);
-  file << nlohmann::json(stats).dump(1) << '\n';
-  file.close();
-  if (file) std::filesystem::rename(fresh, path, error);
-  if (!file || error) {
-    return make_error({path.string(), "cannot be written", "a writable directory for the records", "",
-                       "Choose another directory with --record"});
-  }
-  return {};
 }
 
 std::string two_digits(double value) {

@@ -1,17 +1,14 @@
-// What the random searches have in common: figures that add up, records on disk, tables and threads. A search
+// What the random searches have in common: figures that add up, tables and threads. A search
 // draws cases and checks a rule. Cases are numbered from 0; each depends only on the seed and its number, not
 // on the number of threads or on where a run begins.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
-
-#include "base/error.h"
 
 namespace buoyancy {
 
@@ -67,7 +64,7 @@ SearchColumn count_column(const char* title, const char* what);
 SearchColumn largest_column(const char* title, const char* what);
 
 struct RandomSearch {
-  std::string name;         // of its option and its records; that of the first is empty
+  std::string name;         // of its option; that of the first is empty
   std::string description;  // an imperative
   std::int64_t unit = 1;    // runs begin and end at multiples of this number
   // Runs the cases begin <= number < end.
@@ -82,13 +79,6 @@ struct RandomSearch {
   std::string table(const SearchStats& stats) const;  // in Markdown
   // In one line: the counts, and the largest values with the cases' numbers.
   std::string summary(const SearchStats& stats) const;
-
-  // Records are JSON files, one per seed. Errors: a file is not a record; it cannot be written.
-  Expected<SearchStats> load(const std::filesystem::path& directory, std::uint64_t seed) const;
-  Expected<SearchStats> load_all(const std::filesystem::path& directory) const;
-  // Replaces the file atomically.
-  Expected<void> save(const std::filesystem::path& directory, std::uint64_t seed,
-                      const SearchStats& stats) const;
 };
 
 // "1.2e-09", with two digits.
