@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "hydrostatics/solver.h"
-#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/timeouts.h"
 
@@ -15,8 +14,7 @@ namespace buoyancy::bench {
 namespace {
 
 TEST(ErrorUnderStress, AffectsSinglePrecisionButNotExactMethods) {
-  const FinishedProcess program =
-      run_to_end({{built_program("error_under_stress")}, {}, "/dev/null", "", ""}, kRunTimeout);
+  const FinishedProcess program = run_program("error_under_stress", {}, kRunTimeout);
   ASSERT_EQ(program.exit_code, 0) << program.standard_error;
 
   std::istringstream lines(program.standard_output);

@@ -8,7 +8,6 @@
 
 #include "bench/time_queries.h"
 #include "hydrostatics/wetted_tree_sum.h"
-#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/contains.h"
 #include "tests/support/temp_dir.h"
@@ -41,8 +40,7 @@ CsvRow parse(const std::string& line) {
 TEST(SpeedAccuracy, WritesOneRowPerMeasurement) {
   const TempDir directory;
   const std::string csv = directory.path("rows.csv");
-  const FinishedProcess program = run_to_end(
-      {{built_program("speed_accuracy"), "--smoke", "--csv", csv}, {}, "/dev/null", "", ""}, kRunTimeout);
+  const FinishedProcess program = run_program("speed_accuracy", {"--smoke", "--csv", csv}, kRunTimeout);
   ASSERT_EQ(program.exit_code, 0) << program.standard_error;
   for (const char* const heading :
        {"### Speedup over methods that visit the whole mesh", "### Time, caches flushed before every query"})
@@ -84,23 +82,15 @@ TEST(SpeedAccuracy, WritesOneRowPerMeasurement) {
 
 TEST(SpeedAccuracy, ReportsUnwritableCsv) {
   const FinishedProcess program =
-      run_to_end({{built_program("speed_accuracy"), "--smoke", "--csv", "/no/such/directory/rows.csv"},
-                  {},
-                  "/dev/null",
-                  "",
-                  ""},
-                 kRunTimeout);
+      run_program("speed_accuracy", {"--smoke", "--csv", "/no/such/directory/rows.csv"}, kRunTimeout);
   EXPECT_EQ(program.exit_code, 1);
   EXPECT_TRUE(contains(program.standard_error, "/no/such/directory/rows.csv"));
-  const FinishedProcess full = run_to_end(
-      {{built_program("speed_accuracy"), "--smoke", "--csv", "/dev/full"}, {}, "/dev/null", "", ""},
-      kRunTimeout);
+  const FinishedProcess full = run_program("speed_accuracy", {"--smoke", "--csv", "/dev/full"}, kRunTimeout);
   EXPECT_EQ(full.exit_code, 1);
 }
 
 TEST(SpeedAccuracy, RejectsContradictoryArguments) {
-  const FinishedProcess program = run_to_end(
-      {{built_program("speed_accuracy"), "--smoke", "--quick"}, {}, "/dev/null", "", ""}, kRunTimeout);
+  const FinishedProcess program = run_program("speed_accuracy", {"--smoke", "--quick"}, kRunTimeout);
   EXPECT_EQ(program.exit_code, 2);
 }
 

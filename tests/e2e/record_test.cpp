@@ -10,6 +10,7 @@
 #include "recording/event_log.h"
 #include "tests/e2e/closed_loop.h"
 #include "tests/support/build_paths.h"
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 #include "tests/support/running_program.h"
 #include "tests/support/timeouts.h"
@@ -58,15 +59,14 @@ class Record : public testing::Test {
       file.write(reinterpret_cast<const char*>(event.data()), static_cast<std::streamsize>(event.size()));
     }
     file.close();
-    const FinishedProcess replay =
-        run_to_end(command_of({built_program("buoyancy-replay"), "--scene", scene, "--compare", holes, holes,
-                               directory_.path("replayed.lcmlog")}),
-                   kRunTimeout);
+    const FinishedProcess replay = run_program(
+        "buoyancy-replay", {"--scene", scene, "--compare", holes, holes, directory_.path("replayed.lcmlog")},
+        kRunTimeout);
     EXPECT_EQ(replay.exit_code, 0) << replay.standard_output << replay.standard_error;
     for (const char* const expected :
          {": 3 requests missing, seq 100 to 102\n",
           "8 messages were not recorded, between others of their session\n", "agree with the baseline"}) {
-      EXPECT_NE(replay.standard_output.find(expected), std::string::npos) << replay.standard_output;
+      EXPECT_TRUE(contains(replay.standard_output, expected));
     }
   }
 
@@ -87,8 +87,7 @@ position = [0, 0, 0.3]
   RunningProgram recording(recorder());
   const nlohmann::json summary = simulate(scene, {"-l", kServiceUrl, "--duration", "5", "--step", "0.001"});
   EXPECT_EQ(end(recording), 0) << recording.standard_output() << recording.standard_error();
-  EXPECT_NE(recording.standard_output().find(" 0 requests and 0 responses missing"), std::string::npos)
-      << recording.standard_output();
+  EXPECT_TRUE(contains(recording.standard_output(), " 0 requests and 0 responses missing"));
   expect_that_a_replay_agrees_despite_holes(scene);
   const auto sent = summary["requests"].get<std::int64_t>() + summary["retries"].get<std::int64_t>();
   EXPECT_EQ(static_cast<std::int64_t>(recorded_requests().size()), sent);
@@ -136,24 +135,19 @@ TEST_F(Record, CountsWhatItMissed) {
   const std::int64_t missing = kLast + 1 - static_cast<std::int64_t>(recorded.size());
   EXPECT_GT(missing, 1000);
   const std::string output = recording.standard_output();
-  EXPECT_NE(
-      output.find("; " + std::to_string(missing) + " requests and 0 responses missing; the kernel dropped "),
-      std::string::npos)
+  EXPECT_TRUE(contains(
+      output, "; " + std::to_string(missing) + " requests and 0 responses missing; the kernel dropped "))
       << missing << '\n'
       << output;
-  EXPECT_NE(output.find("session 5: " + std::to_string(missing) + " requests missing, seq "),
-            std::string::npos)
-      << output;
-  EXPECT_NE(recording.standard_error().find("its receive buffer was full"), std::string::npos);
+  EXPECT_TRUE(contains(output, "session 5: " + std::to_string(missing) + " requests missing, seq "));
+  EXPECT_TRUE(contains(recording.standard_error(), "its receive buffer was full"));
 }
 
 TEST_F(Record, RefusesWhatItCannotWrite) {
-  const FinishedProcess folder =
-      run_to_end(command_of({built_program("buoyancy-record"), directory_.path("")}), kWaitTimeout);
+  const FinishedProcess folder = run_program("buoyancy-record", {directory_.path("")});
   EXPECT_EQ(folder.exit_code, 1);
-  EXPECT_NE(folder.standard_error.find("buoyancy-record: "), std::string::npos);
-  const FinishedProcess twice = run_to_end(
-      command_of({built_program("buoyancy-record"), log_, "--channel", "A", "--channel", "A"}), kWaitTimeout);
+  EXPECT_TRUE(contains(folder.standard_error, "buoyancy-record: "));
+  const FinishedProcess twice = run_program("buoyancy-record", {log_, "--channel", "A", "--channel", "A"});
   EXPECT_EQ(twice.exit_code, 2);
 }
 

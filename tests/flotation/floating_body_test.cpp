@@ -13,6 +13,7 @@
 #include "hydrostatics/buoyancy.h"
 #include "tests/flotation/bodies.h"
 #include "tests/hydrostatics/random_poses.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
@@ -202,7 +203,7 @@ TEST(FloatingBody, RejectsWhatIsNoBody) {
   EXPECT_FALSE(make({}, 1.0));
   EXPECT_FALSE(FloatingBody::make({}, 1.0, Vec3::Zero()));
   const auto error = make({.mesh = &mesh, .signed_permeability = 0.5}, 1.0).error();
-  EXPECT_NE(error.message().find("0.5"), std::string::npos) << error.message();
+  EXPECT_TRUE(contains(error.message(), "0.5"));
 }
 
 TEST(ShipAxes, ConvertBetweenHeelTrimAndUp) {

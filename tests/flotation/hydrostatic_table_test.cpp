@@ -8,6 +8,7 @@
 
 #include "tests/flotation/bodies.h"
 #include "tests/hydrostatics/test_meshes.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
@@ -148,7 +149,7 @@ TEST(HydrostaticTable, TakesPerpendicularsAndKeel) {
   options.aft_perpendicular = 30.0;
   const auto wrong = HydrostaticTable::make(body, kWater, options);
   ASSERT_FALSE(wrong);
-  EXPECT_NE(wrong.error().message().find("perpendicular"), std::string::npos);
+  EXPECT_TRUE(contains(wrong.error().message(), "perpendicular"));
 }
 
 TEST(HydrostaticTable, HasNoCentreWhereNothingIsDisplaced) {

@@ -11,6 +11,7 @@
 #include "tests/flotation/bodies.h"
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/hydrostatics/test_meshes.h"
+#include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
@@ -121,10 +122,10 @@ TEST(FloatingBodyWithTanks, RejectsLiquidThatDoesNotFit) {
     const auto body = FloatingBody::make({&placed, 1}, 100.0, Vec3::Zero(), {&bad, 1});
     return body ? std::string("accepted") : body.error().message();
   };
-  EXPECT_NE(error_of({&tank, 1.5, 1000.0}).find("1.5 m^3"), std::string::npos);
-  EXPECT_NE(error_of({&tank, -0.1, 1000.0}).find("-0.1 m^3"), std::string::npos);
-  EXPECT_NE(error_of({&tank, 0.5, -1.0}).find("density -1"), std::string::npos);
-  EXPECT_NE(error_of({nullptr, 0.5, 1.0}).find("mesh"), std::string::npos);
+  EXPECT_TRUE(contains(error_of({&tank, 1.5, 1000.0}), "1.5 m^3"));
+  EXPECT_TRUE(contains(error_of({&tank, -0.1, 1000.0}), "-0.1 m^3"));
+  EXPECT_TRUE(contains(error_of({&tank, 0.5, -1.0}), "density -1"));
+  EXPECT_TRUE(contains(error_of({nullptr, 0.5, 1.0}), "mesh"));
   EXPECT_EQ(error_of({&tank, 1.0, 1000.0}), "accepted");
 }
 

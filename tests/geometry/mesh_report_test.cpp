@@ -66,14 +66,12 @@ TEST(MeshReport, SaysHowMuchVolumeCountsTwice) {
 TEST(MeshReport, ListsTheShareOfEachHole) {
   // Of a cube of 8 m^3, one triangle of 2 m^2.
   const std::string text = text_of(without_face(cube_mesh(2.0), 0));
-  EXPECT_NE(text.find("1.06 m^3 in a hemisphere over it, 13.3 % of the closed volume\n"), std::string::npos)
-      << text;
+  EXPECT_TRUE(contains(text, "1.06 m^3 in a hemisphere over it, 13.3 % of the closed volume\n"));
 }
 
 TEST(MeshReport, RoundsCoordinatesToThoseOfFiles) {
-  EXPECT_NE(text_of(box_mesh(Vec3::Constant(-0.8F), Vec3::Constant(1.4F)))
-                .find("from -0.8, -0.8, -0.8 to 1.4, 1.4, 1.4 m"),
-            std::string::npos);
+  EXPECT_TRUE(contains(text_of(box_mesh(Vec3::Constant(-0.8F), Vec3::Constant(1.4F))),
+                       "from -0.8, -0.8, -0.8 to 1.4, 1.4, 1.4 m"));
 }
 
 TEST(MeshReport, ListsRepairs) {

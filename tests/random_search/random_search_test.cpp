@@ -14,6 +14,7 @@
 #include "tests/random_search/shrink.h"
 #include "tests/random_search/wave_search.h"
 #include "tests/stress/stress_case.h"
+#include "tests/support/contains.h"
 #include "tests/truth/reference_load.h"
 #include "waves/sea_snapshot.h"
 
@@ -101,7 +102,7 @@ TEST(StillWaterSearch, FindsAndShrinksInaccurateResult) {
   EXPECT_TRUE(still_fails(small.mesh, small.requested));
   EXPECT_LE(small.mesh.triangles.size(), 8U);
   const std::string text = as_test(small, 2, number);
-  EXPECT_NE(text.find("TEST(FoundBySearch, Seed2Case" + std::to_string(number)), std::string::npos) << text;
+  EXPECT_TRUE(contains(text, "TEST(FoundBySearch, Seed2Case" + std::to_string(number)));
 }
 
 TEST(StillWaterSearch, FindsNanResult) {
@@ -130,7 +131,7 @@ TEST(WaveSearch, FindsBoundsTooSmallByAHundred) {
   EXPECT_GE(stats.failed_cases, 4);
   ASSERT_FALSE(stats.failures.empty());
   const SearchFailure& failure = stats.failures[0];
-  EXPECT_NE(failure.violations[0].find("error"), std::string::npos) << failure.violations[0];
+  EXPECT_TRUE(contains(failure.violations[0], "error"));
   EXPECT_FALSE(replay_wave_case(2, failure.number, with_bounds_times(0.01)).violations.empty());
   EXPECT_TRUE(replay_wave_case(2, failure.number, product_load).violations.empty());
 }

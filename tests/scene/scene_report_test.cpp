@@ -9,6 +9,7 @@
 #include "base/format.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/scene/scene_texts.h"
+#include "tests/support/contains.h"
 #include "tests/support/json.h"
 
 namespace buoyancy {
@@ -118,12 +119,11 @@ TEST(SceneReport, SaysThatAMassIsTheDefault) {
   const std::string line = "  mass          512.5 kg, 512.5 kg/m^3";
   const std::string by_default =
       scene_report_text(prepared("[[body]]\nid = 1\nshape = { type = \"box\" }\n"));
-  EXPECT_NE(by_default.find(line + " (default: half the water's density)\n"), std::string::npos)
-      << by_default;
-  EXPECT_NE(scene_report_text(prepared("[[body]]\nid = 1\nshape = { type = \"box\" }\n[body.client]\n"
-                                       "density = 512.5\n"))
-                .find(line + "\n"),
-            std::string::npos);
+  EXPECT_TRUE(contains(by_default, line + " (default: half the water's density)\n"));
+  EXPECT_TRUE(
+      contains(scene_report_text(prepared("[[body]]\nid = 1\nshape = { type = \"box\" }\n[body.client]\n"
+                                          "density = 512.5\n")),
+               line + "\n"));
 }
 
 TEST(SceneReport, FormatsBodiesAndMeshesAsText) {
@@ -278,7 +278,7 @@ TEST(SceneReport, FormatsTheSeaAsText) {
         "  components    listed by --check --json\n"}) {
     EXPECT_THAT(text, HasSubstr(expected));
   }
-  EXPECT_EQ(scene_report_text(prepared(kThreeBodies)).find("sea"), std::string::npos);
+  EXPECT_FALSE(contains(scene_report_text(prepared(kThreeBodies)), "sea"));
   const std::string regular = scene_report_text(
       prepared(scene_with_crate("[water.waves]\ntype = \"regular\"\nheight = 1\nperiod = 8\n")));
   EXPECT_THAT(regular, AllOf(HasSubstr("  depth         inf: deep water\n"), HasSubstr("no ramp\n")));

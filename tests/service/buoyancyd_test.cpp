@@ -16,8 +16,7 @@ namespace buoyancy {
 namespace {
 
 FinishedProcess run(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), built_program("buoyancyd"));
-  return run_to_end(command_of(std::move(arguments)), kWaitTimeout);
+  return run_program("buoyancyd", std::move(arguments));
 }
 
 // Expects this exit code, nothing on stdout, and one line on stderr that contains `text`.

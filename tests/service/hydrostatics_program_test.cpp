@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <limits>
 #include <numbers>
-#include <optional>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,29 +16,18 @@
 #include "service/hydrostatics/hydrostatics_options.h"
 #include "service/hydrostatics/hydrostatics_page.h"
 #include "tests/geometry/mesh_files.h"
-#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/contains.h"
 #include "tests/support/csv.h"
 #include "tests/support/temp_dir.h"
-#include "tests/support/timeouts.h"
 
 namespace buoyancy::service {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-struct ProgramRun {
-  int exit_code = -1;
-  std::string output;
-  std::string error;
-};
-
-ProgramRun run(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), built_program("buoyancy-hydrostatics"));
-  ChildProcess program(command_of(std::move(arguments)));
-  const std::optional<int> exit_code = program.wait(kWaitTimeout);
-  return {exit_code.value_or(-1), program.standard_output(), program.standard_error()};
+FinishedProcess run(std::vector<std::string> arguments) {
+  return run_program("buoyancy-hydrostatics", std::move(arguments));
 }
 
 // Beam 20, depth 12, draught 6, KG 8 [m], with B's origin in the middle.
@@ -60,9 +47,9 @@ shape = { type = "box", size = [80, 20, 12], segments = [2, 2, 2] }
 };
 
 TEST_F(HydrostaticsProgram, WritesRightingArmsAsCsv) {
-  const ProgramRun result =
+  const FinishedProcess result =
       run({"gz", "--scene", ship(), "--heel", "-30:90:15", "--csv", dir_.path("gz.csv")});
-  ASSERT_EQ(result.exit_code, 0) << result.error;
+  ASSERT_EQ(result.exit_code, 0) << result.standard_error;
   const auto rows = csv_rows(read_file(dir_.path("gz.csv")));
   EXPECT_EQ(rows.at(0), (CsvRow{"heel", "trim", "draft", "gz", "kn", "area"}));
   ASSERT_EQ(rows.size(), 10U);
@@ -73,14 +60,15 @@ TEST_F(HydrostaticsProgram, WritesRightingArmsAsCsv) {
   EXPECT_NEAR(at_thirty[5], 0.132002392797, 1e-12);
   EXPECT_NEAR(std::stod(rows[1][3]), -at_thirty[3], 1e-12);
   EXPECT_NEAR(std::stod(rows[9][3]), -2.0, 1e-9);
-  EXPECT_TRUE(contains(result.output, "largest arm to starboard"));
-  EXPECT_TRUE(contains(result.output, "not a class approval"));
+  EXPECT_TRUE(contains(result.standard_output, "largest arm to starboard"));
+  EXPECT_TRUE(contains(result.standard_output, "not a class approval"));
 }
 
 TEST_F(HydrostaticsProgram, PrintsRightingArmsAsJson) {
-  const ProgramRun result = run({"--scene", ship(), "--json", "gz", "--fixed-trim", "--heel", "-180:180:10"});
-  ASSERT_EQ(result.exit_code, 0) << result.error;
-  const auto json = nlohmann::json::parse(result.output);
+  const FinishedProcess result =
+      run({"--scene", ship(), "--json", "gz", "--fixed-trim", "--heel", "-180:180:10"});
+  ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+  const auto json = nlohmann::json::parse(result.standard_output);
   EXPECT_EQ(json.at("points").size(), 37U);
   EXPECT_GT(json.at("vanishing_starboard").get<double>(), 60.0);
   EXPECT_EQ(json.at("criteria").at("values").size(), 6U);
@@ -93,9 +81,9 @@ TEST_F(HydrostaticsProgram, PrintsRightingArmsAsJson) {
 TEST_F(HydrostaticsProgram, ComparesArmsWithTheGeneralCriteriaAsData) {
   const auto criteria_at = [&](const std::string& height_of_mass) {
     const std::string at = scene("density = 512.5\ncenter_of_mass = [0, 0, " + height_of_mass + "]\n");
-    const ProgramRun result = run({"gz", "--scene", at, "--heel", "0:90:30", "--json"});
-    EXPECT_EQ(result.exit_code, 0) << result.error;
-    return nlohmann::json::parse(result.output).at("criteria");
+    const FinishedProcess result = run({"gz", "--scene", at, "--heel", "0:90:30", "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    return nlohmann::json::parse(result.standard_output).at("criteria");
   };
   const auto criteria = criteria_at("2");
   EXPECT_EQ(criteria.at("source"), "2008 IS Code A 2.2, to starboard; not a class approval");
@@ -121,9 +109,9 @@ TEST_F(HydrostaticsProgram, ComparesArmsWithTheGeneralCriteriaAsData) {
 }
 
 TEST_F(HydrostaticsProgram, WritesTableAsCsv) {
-  const ProgramRun result = run(
+  const FinishedProcess result = run(
       {"table", "--scene", ship(), "--draft", "1:6:2.5", "--trim", "-1:1:1", "--csv", dir_.path("t.csv")});
-  ASSERT_EQ(result.exit_code, 0) << result.error;
+  ASSERT_EQ(result.exit_code, 0) << result.standard_error;
   const std::string csv = read_file(dir_.path("t.csv"));
   const auto rows = csv_rows(csv);
   EXPECT_TRUE(csv.starts_with(
@@ -141,9 +129,9 @@ TEST_F(HydrostaticsProgram, WritesTableAsCsv) {
 }
 
 TEST_F(HydrostaticsProgram, PrintsEquilibriaAsJsonLowestEnergyFirst) {
-  const ProgramRun result = run({"equilibrium", "--scene", ship(), "--json", "--unstable"});
-  ASSERT_EQ(result.exit_code, 0) << result.error;
-  const auto json = nlohmann::json::parse(result.output);
+  const FinishedProcess result = run({"equilibrium", "--scene", ship(), "--json", "--unstable"});
+  ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+  const auto json = nlohmann::json::parse(result.standard_output);
   EXPECT_EQ(json.at("outcome"), "floats");
   double energy = -std::numeric_limits<double>::infinity();
   bool unstable = false;
@@ -173,14 +161,14 @@ TEST_F(HydrostaticsProgram, TakesAMeshWithAMass) {
       dir_.write("box.obj",
                  "v 0 0 0\nv 4 0 0\nv 4 2 0\nv 0 2 0\nv 0 0 1\nv 4 0 1\nv 4 2 1\nv 0 2 1\n"
                  "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-  const ProgramRun result =
+  const FinishedProcess result =
       run({"equilibrium", "--mesh", mesh, "--mass", "4100", "--center-of-mass", "2,1,0.3", "--json"});
-  ASSERT_EQ(result.exit_code, 0) << result.error;
-  const auto first = nlohmann::json::parse(result.output).at("attitudes").at(0);
+  ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+  const auto first = nlohmann::json::parse(result.standard_output).at("attitudes").at(0);
   EXPECT_NEAR(first.at("draft").get<double>(), 0.5, 1e-12);
-  const ProgramRun without_mass = run({"equilibrium", "--mesh", mesh});
+  const FinishedProcess without_mass = run({"equilibrium", "--mesh", mesh});
   EXPECT_EQ(without_mass.exit_code, 2);
-  EXPECT_TRUE(contains(without_mass.error, "--mass"));
+  EXPECT_TRUE(contains(without_mass.standard_error, "--mass"));
 }
 
 // [m rad], under the curve of the wall-sided ship from 0 to a heel.
@@ -192,10 +180,10 @@ double wall_sided_area(double heel) {
 
 TEST_F(HydrostaticsProgram, ReportsDeckEdgeAndDownflooding) {
   const std::string file = ship();
-  const ProgramRun result = run({"gz", "--scene", file, "--json", "--heel", "0:60:20", "--deck-edge",
-                                 "0,10,6", "--deck-edge", "5,-10,4", "--downflooding=0,-10,6"});
-  ASSERT_EQ(result.exit_code, 0) << result.error;
-  const auto json = nlohmann::json::parse(result.output);
+  const FinishedProcess result = run({"gz", "--scene", file, "--json", "--heel", "0:60:20", "--deck-edge",
+                                      "0,10,6", "--deck-edge", "5,-10,4", "--downflooding=0,-10,6"});
+  ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+  const auto json = nlohmann::json::parse(result.standard_output);
   EXPECT_NEAR(json.at("deck_edge").at("starboard").at("heel").get<double>(), std::atan(0.4) / kDegree, 1e-9);
   EXPECT_EQ(json.at("deck_edge").at("starboard").at("point"), 1);
   EXPECT_NEAR(json.at("deck_edge").at("port").at("heel").get<double>(), -std::atan(0.6) / kDegree, 1e-9);
@@ -209,20 +197,22 @@ TEST_F(HydrostaticsProgram, ReportsDeckEdgeAndDownflooding) {
               wall_sided_area(flooding) - wall_sided_area(30.0 * kDegree), 1e-10);
   EXPECT_EQ(criteria.at(2).at("met"), false);
 
-  const ProgramRun text = run({"gz", "--scene", file, "--heel", "0", "--deck-edge", "0,-10,6"});
-  EXPECT_TRUE(contains(text.output, "deck edge under water to starboard: 30.963757 degrees, point 1\n"));
-  EXPECT_FALSE(contains(text.output, "downflooding"));
-  const auto without = nlohmann::json::parse(run({"gz", "--scene", file, "--json", "--heel", "0"}).output);
+  const FinishedProcess text = run({"gz", "--scene", file, "--heel", "0", "--deck-edge", "0,-10,6"});
+  EXPECT_TRUE(
+      contains(text.standard_output, "deck edge under water to starboard: 30.963757 degrees, point 1\n"));
+  EXPECT_FALSE(contains(text.standard_output, "downflooding"));
+  const auto without =
+      nlohmann::json::parse(run({"gz", "--scene", file, "--json", "--heel", "0"}).standard_output);
   EXPECT_TRUE(without.at("deck_edge").is_null());
   EXPECT_EQ(without.at("criteria").at("values").at(1).at("name"), "area from 0 to 40 degrees");
 }
 
 TEST_F(HydrostaticsProgram, EndsCriteriaWhereWaterComesInEarly) {
   const std::string opening = "0,-5," + std::to_string(5.0 * std::tan(24.0 * kDegree));
-  const ProgramRun result =
+  const FinishedProcess result =
       run({"gz", "--scene", ship(), "--json", "--heel", "0", "--downflooding", opening});
-  ASSERT_EQ(result.exit_code, 0) << result.error;
-  const auto criteria = nlohmann::json::parse(result.output).at("criteria").at("values");
+  ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+  const auto criteria = nlohmann::json::parse(result.standard_output).at("criteria").at("values");
   const std::string end = "downflooding at 24 degrees";
   const std::array<std::string, 5> names{"area from 0 to 30 degrees, cut at downflooding",
                                          "area from 0 to " + end, "area from 30 to " + end,
@@ -243,7 +233,7 @@ TEST_F(HydrostaticsProgram, EndsCriteriaWhereWaterComesInEarly) {
   const auto with_opening_at = [&](double degrees) {
     const std::string at = "0,-5," + std::to_string(5.0 * std::tan(degrees * kDegree));
     return nlohmann::json::parse(
-               run({"gz", "--scene", ship(), "--json", "--heel", "0", "--downflooding", at}).output)
+               run({"gz", "--scene", ship(), "--json", "--heel", "0", "--downflooding", at}).standard_output)
         .at("criteria")
         .at("values");
   };
@@ -266,14 +256,14 @@ TEST_F(HydrostaticsProgram, TakesWaterScaleAndOpenPolicyWithAMesh) {
   const std::vector<std::string> closed{"equilibrium",      "--mesh",  mesh,        "--mass",  "2000",
                                         "--center-of-mass", "2,1,0.2", "--json",    "--scale", "2",
                                         "--density",        "1000",    "--gravity", "1.62"};
-  const ProgramRun refused = run(closed);
+  const FinishedProcess refused = run(closed);
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_TRUE(contains(refused.error, "dry_boundary"));
+  EXPECT_TRUE(contains(refused.standard_error, "dry_boundary"));
   std::vector<std::string> open = closed;
   open.insert(open.end(), {"--open", "dry_boundary"});
-  const ProgramRun result = run(open);
-  ASSERT_EQ(result.exit_code, 0) << result.error;
-  const auto json = nlohmann::json::parse(result.output);
+  const FinishedProcess result = run(open);
+  ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+  const auto json = nlohmann::json::parse(result.standard_output);
   ASSERT_EQ(json.at("attitudes").size(), 1U);
   const auto& at = json.at("attitudes").at(0);
   EXPECT_NEAR(at.at("draft").get<double>(), 0.25, 1e-12);
@@ -281,12 +271,12 @@ TEST_F(HydrostaticsProgram, TakesWaterScaleAndOpenPolicyWithAMesh) {
 
   open.front() = "gz";
   open.insert(open.end(), {"--heel", "0:60:20"});
-  const ProgramRun capsized = run(open);
+  const FinishedProcess capsized = run(open);
   EXPECT_EQ(capsized.exit_code, 1);
   // Heeled by 45 degrees it displaces a prism, up to its edge: 4 times 1 x 1 / 2 m^3.
-  EXPECT_TRUE(contains(capsized.error, "no balance at a heel of 60 degrees"));
-  EXPECT_TRUE(contains(capsized.error, "takes in water"));
-  const auto curve = nlohmann::json::parse(capsized.output);
+  EXPECT_TRUE(contains(capsized.standard_error, "no balance at a heel of 60 degrees"));
+  EXPECT_TRUE(contains(capsized.standard_error, "takes in water"));
+  const auto curve = nlohmann::json::parse(capsized.standard_output);
   ASSERT_EQ(curve.at("points").size(), 3U);
   EXPECT_EQ(curve.at("points").at(2).at("heel"), 40.0);
   EXPECT_DOUBLE_EQ(curve.at("unbalanced_starboard").get<double>(), 60.0);
@@ -294,19 +284,19 @@ TEST_F(HydrostaticsProgram, TakesWaterScaleAndOpenPolicyWithAMesh) {
   EXPECT_TRUE(curve.at("criteria").at("values").empty());
 
   open.back() = "60:80:20";
-  const ProgramRun nothing = run(open);
+  const FinishedProcess nothing = run(open);
   EXPECT_EQ(nothing.exit_code, 1);
-  EXPECT_TRUE(nothing.output.empty());
-  EXPECT_TRUE(contains(nothing.error, "no balance at a heel of 60 degrees"));
+  EXPECT_TRUE(nothing.standard_output.empty());
+  EXPECT_TRUE(contains(nothing.standard_error, "no balance at a heel of 60 degrees"));
 }
 
 TEST_F(HydrostaticsProgram, SaysThatAMassIsAssumed) {
   const std::string undefined = scene("center_of_mass = [0, 0, 2]\n");
-  const ProgramRun arms = run({"gz", "--scene", undefined, "--heel", "0:10:5"});
+  const FinishedProcess arms = run({"gz", "--scene", undefined, "--heel", "0:10:5"});
   EXPECT_EQ(arms.exit_code, 0);
-  EXPECT_TRUE(contains(arms.error, "a mass of 9.84e+06 kg is assumed")) << arms.error;
-  EXPECT_EQ(run({"table", "--scene", undefined, "--draft", "6:6:1"}).error, "");
-  EXPECT_EQ(run({"gz", "--scene", ship(), "--heel", "0:10:5"}).error, "");
+  EXPECT_TRUE(contains(arms.standard_error, "a mass of 9.84e+06 kg is assumed")) << arms.standard_error;
+  EXPECT_EQ(run({"table", "--scene", undefined, "--draft", "6:6:1"}).standard_error, "");
+  EXPECT_EQ(run({"gz", "--scene", ship(), "--heel", "0:10:5"}).standard_error, "");
 }
 
 // A barge whose middle is beside the origin of its mesh, with its mass to port, whichever axes of the mesh
@@ -353,9 +343,9 @@ TEST_F(HydrostaticsProgram, AgreesWithClosedFormsInAnyFrameOfTheMesh) {
             std::string("--up=") + up, "--scale=" + format_shortest(scale), std::string("--json")}) {
         arguments.push_back(one);
       }
-      const ProgramRun result = run(arguments);
-      EXPECT_EQ(result.exit_code, 0) << result.error;
-      return nlohmann::json::parse(result.output);
+      const FinishedProcess result = run(arguments);
+      EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+      return nlohmann::json::parse(result.standard_output);
     };
     const auto arms = json({"gz", "--heel", "-20:30:10", "--deck-edge=" + text(0, 10, 6),
                             "--deck-edge=" + text(5, -10, 4), "--downflooding=" + text(-2, -10, 5.5)});
@@ -399,9 +389,9 @@ TEST_F(HydrostaticsProgram, WarnsOfAMeshWhoseUpAxisIsNotTheShips) {
     std::vector<std::string> arguments{"equilibrium", "--mesh",           mesh,         "--mass",
                                        "80",          "--center-of-mass", "0.2,0.2,0.2"};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    const ProgramRun result = run(arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.error;
-    return result.error;
+    const FinishedProcess result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    return result.standard_error;
   };
   const std::string warning = error_with({});
   EXPECT_TRUE(contains(warning, ": warning: "));
@@ -417,20 +407,20 @@ TEST_F(HydrostaticsProgram, WarnsOfAMeshWhoseUpAxisIsNotTheShips) {
 
 TEST_F(HydrostaticsProgram, SaysThatABodySinks) {
   const std::string heavy = scene("density = 1100\n");
-  const ProgramRun result = run({"equilibrium", "--scene", heavy, "--json"});
-  EXPECT_EQ(result.exit_code, 0) << result.error;
-  EXPECT_EQ(nlohmann::json::parse(result.output).at("outcome"), "sinks");
-  const ProgramRun arms = run({"gz", "--scene", heavy});
+  const FinishedProcess result = run({"equilibrium", "--scene", heavy, "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+  EXPECT_EQ(nlohmann::json::parse(result.standard_output).at("outcome"), "sinks");
+  const FinishedProcess arms = run({"gz", "--scene", heavy});
   EXPECT_EQ(arms.exit_code, 1);
-  EXPECT_TRUE(contains(arms.error, "sinks"));
+  EXPECT_TRUE(contains(arms.standard_error, "sinks"));
 }
 
 TEST_F(HydrostaticsProgram, WritesAPageBesideJsonAndCsv) {
   const std::string page = dir_.path("gz.html");
-  const ProgramRun result = run(
+  const FinishedProcess result = run(
       {"gz", "--scene", ship(), "--heel", "0:40:10", "--json", "--csv", dir_.path("gz.csv"), "--html", page});
-  ASSERT_EQ(result.exit_code, 0) << result.error;
-  EXPECT_EQ(nlohmann::json::parse(result.output).at("points").size(), 5U);
+  ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+  EXPECT_EQ(nlohmann::json::parse(result.standard_output).at("points").size(), 5U);
   EXPECT_EQ(csv_rows(read_file(dir_.path("gz.csv"))).size(), 6U);
   const std::string html = read_file(page);
   EXPECT_TRUE(html.starts_with("<!DOCTYPE html>"));
@@ -441,19 +431,20 @@ TEST_F(HydrostaticsProgram, WritesAPageBesideJsonAndCsv) {
 
 TEST_F(HydrostaticsProgram, SaysWhyAPageCannotBeWritten) {
   const std::string file = ship();
-  const ProgramRun absent = run({"equilibrium", "--scene", file, "--html", dir_.path("no/such/page.html")});
+  const FinishedProcess absent =
+      run({"equilibrium", "--scene", file, "--html", dir_.path("no/such/page.html")});
   EXPECT_EQ(absent.exit_code, 1);
-  EXPECT_TRUE(contains(absent.error, "No such file or directory"));
-  const ProgramRun full = run({"equilibrium", "--scene", file, "--html", "/dev/full"});
+  EXPECT_TRUE(contains(absent.standard_error, "No such file or directory"));
+  const FinishedProcess full = run({"equilibrium", "--scene", file, "--html", "/dev/full"});
   EXPECT_EQ(full.exit_code, 1);
-  EXPECT_TRUE(contains(full.error, "No space left on device"));
+  EXPECT_TRUE(contains(full.standard_error, "No space left on device"));
   const std::string page = dir_.path("page.html");
-  const ProgramRun three =
+  const FinishedProcess three =
       run({"equilibrium", "--scene", file, "--html", page, "--three", dir_.path("three.js")});
   EXPECT_EQ(three.exit_code, 1);
-  EXPECT_TRUE(contains(three.error, "libjs-three"));
+  EXPECT_TRUE(contains(three.standard_error, "libjs-three"));
   EXPECT_FALSE(std::filesystem::exists(page));
-  const ProgramRun scene_itself = run({"equilibrium", "--scene", file, "--html", file});
+  const FinishedProcess scene_itself = run({"equilibrium", "--scene", file, "--html", file});
   EXPECT_EQ(scene_itself.exit_code, 2);
   EXPECT_EQ(run({"equilibrium", "--scene", file, "--html", page, "--csv", page}).exit_code, 2);
   EXPECT_EQ(run({"equilibrium", "--scene", file, "--three", "/dev/null"}).exit_code, 2);
@@ -491,10 +482,10 @@ TEST_F(HydrostaticsProgram, RejectsWrongArguments) {
       {"gz", "--mesh", "a.obj", "--mass", "1", "--center-of-mass", "0,0,0", "--open", "maybe"},
       {"table", "--scene", good, "--draft", "1", "--aft-perpendicular", "9", "--forward-perpendicular", "3"}};
   for (std::size_t i = 0; i < wrong.size(); ++i) {
-    const ProgramRun result = run(wrong[i]);
+    const FinishedProcess result = run(wrong[i]);
     EXPECT_NE(result.exit_code, 0) << i;
-    EXPECT_FALSE(result.error.empty()) << i;
-    EXPECT_TRUE(result.output.empty()) << i << result.output;
+    EXPECT_FALSE(result.standard_error.empty()) << i;
+    EXPECT_TRUE(result.standard_output.empty()) << i << result.standard_output;
   }
 }
 

@@ -71,9 +71,7 @@ void send_steps(int steps, const std::function<void(BodyState&)>& change) {
 }
 
 FinishedProcess ping(const RunningService& service) {
-  return run_to_end(
-      command_of({built_program("buoyancy-ping"), "--scene", service.path("scene.toml"), "--count", "3"}),
-      kWaitTimeout);
+  return run_program("buoyancy-ping", {"--scene", service.path("scene.toml"), "--count", "3"});
 }
 
 class BeginnersMistake : public testing::TestWithParam<Mistake> {};

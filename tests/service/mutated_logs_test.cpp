@@ -9,11 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/recorded_log.h"
 #include "tests/support/temp_dir.h"
-#include "tests/support/timeouts.h"
 
 namespace buoyancy {
 namespace {
@@ -106,9 +104,8 @@ using Responses = std::map<int, std::string>;
 class ReplayMutatedLogs : public testing::Test {
  protected:
   FinishedProcess replay(const std::string& log) const {
-    return run_to_end(command_of({built_program("buoyancy-replay"), "--scene", scene_,
-                                  directory_.write("in.lcmlog", log), directory_.path("out.csv")}),
-                      kWaitTimeout);
+    return run_program("buoyancy-replay",
+                       {"--scene", scene_, directory_.write("in.lcmlog", log), directory_.path("out.csv")});
   }
 
   Responses responses() const {

@@ -6,7 +6,6 @@
 
 #include "tests/service/replay_fixture.h"
 #include "tests/service/running_service.h"
-#include "tests/support/build_paths.h"
 #include "tests/support/contains.h"
 #include "tests/support/damaged_boxes.h"
 #include "tests/support/timeouts.h"
@@ -102,8 +101,7 @@ TEST(RecordedRun, ReplaysToSameBytesAsLiveRun) {
   logger.send_signal(SIGINT);
   ASSERT_TRUE(logger.wait(kWaitTimeout));
 
-  const FinishedProcess finished = run_to_end(
-      command_of({built_program("buoyancy-replay"), "--scene", scene, recorded, replayed}), kWaitTimeout);
+  const FinishedProcess finished = run_program("buoyancy-replay", {"--scene", scene, recorded, replayed});
   ASSERT_EQ(finished.exit_code, 1) << "one condition cannot be used";
   EXPECT_TRUE(contains(finished.standard_error, "liquid_volume = 2"));
   const std::vector<RawBytes> live = events(recorded, "BUOYANCY_WRENCHES");

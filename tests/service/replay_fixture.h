@@ -25,7 +25,7 @@ class Replay : public testing::Test {
     return command_of(std::move(arguments));
   }
   FinishedProcess run(std::vector<std::string> arguments) const {
-    return run_to_end(command(std::move(arguments)), kWaitTimeout);
+    return run_program("buoyancy-replay", std::move(arguments));
   }
   FinishedProcess replay(const std::string& input, const std::string& output,
                          const std::vector<std::string>& options = {}) const {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -17,6 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/support/build_paths.h"
 #include "tests/support/timeouts.h"
 
 namespace buoyancy {
@@ -261,6 +263,11 @@ FinishedProcess run_to_end(const ChildCommand& command, double seconds) {
   finished.standard_output = child.standard_output();
   finished.standard_error = child.standard_error();
   return finished;
+}
+
+FinishedProcess run_program(const std::string& name, std::vector<std::string> arguments, double seconds) {
+  arguments.insert(arguments.begin(), built_program(name));
+  return run_to_end(command_of(std::move(arguments)), seconds);
 }
 
 }  // namespace buoyancy

@@ -19,6 +19,8 @@
 
 #include <sys/types.h>
 
+#include "tests/support/timeouts.h"
+
 namespace buoyancy {
 
 struct ChildCommand {
@@ -74,5 +76,8 @@ struct FinishedProcess {
 
 // Starts a program, waits at most `seconds` for its end and kills it otherwise.
 FinishedProcess run_to_end(const ChildCommand& command, double seconds);
+// The same with a program of this build, such as "buoyancyd".
+FinishedProcess run_program(const std::string& name, std::vector<std::string> arguments,
+                            double seconds = kWaitTimeout);
 
 }  // namespace buoyancy

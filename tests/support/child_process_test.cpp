@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include "tests/support/contains.h"
 #include "tests/support/running_program.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
@@ -132,7 +133,7 @@ TEST(ChildProcess, ExitsWith127IfProgramIsMissing) {
   command.arguments = {"/no/such/program"};
   const FinishedProcess finished = run_to_end(command, kWaitTimeout);
   EXPECT_EQ(finished.exit_code, 127);
-  EXPECT_NE(finished.standard_error.find("/no/such/program"), std::string::npos);
+  EXPECT_TRUE(contains(finished.standard_error, "/no/such/program"));
 }
 
 TEST(RunningProgram, ReturnsOnceProgramIsReady) {

@@ -18,6 +18,7 @@
 #include "testing/private_network.h"
 #include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
+#include "tests/support/contains.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/timeouts.h"
 
@@ -148,7 +149,7 @@ FinishedProcess run_example(const std::string& program, std::vector<std::string>
 TEST(ServiceRoundTripExample, Passes) {
   const FinishedProcess run = run_example(built_program("service_round_trip_test"), {});
   EXPECT_EQ(run.exit_code, 0) << run.standard_output << run.standard_error;
-  EXPECT_EQ(run.standard_output.find("The log of buoyancyd"), std::string::npos);
+  EXPECT_FALSE(contains(run.standard_output, "The log of buoyancyd"));
 }
 
 TEST(ServiceTest, PrintsTheLogOfAFailedTest) {

@@ -4,18 +4,15 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "tests/support/build_paths.h"
 #include "tests/support/child_process.h"
 #include "tests/support/contains.h"
 #include "tests/support/csv.h"
 #include "tests/support/temp_dir.h"
-#include "tests/support/timeouts.h"
 #include "tests/view/page_test.h"
 
 namespace buoyancy::view {
@@ -42,11 +39,6 @@ shape = { type = "box", size = [8, 1, 1] }
 density = 512.5
 )";
 
-FinishedProcess hydrostatics(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), built_program("buoyancy-hydrostatics"));
-  return run_to_end(command_of(std::move(arguments)), kWaitTimeout);
-}
-
 class HydrostaticsPage : public PageTest {
  protected:
   static void SetUpTestSuite() { directory_ = std::make_unique<TempDir>(); }
@@ -65,7 +57,7 @@ class HydrostaticsPage : public PageTest {
                                         std::string("--html"), page(), std::string("--csv"), csv()}) {
       arguments.push_back(argument);
     }
-    const FinishedProcess written = hydrostatics(std::move(arguments));
+    const FinishedProcess written = run_program("buoyancy-hydrostatics", std::move(arguments));
     EXPECT_EQ(written.exit_code, 0) << written.standard_error;
     browser().open_file(page());
     browser().wait_until("window.buoyancy_hydrostatics !== undefined");
@@ -82,11 +74,6 @@ class HydrostaticsPage : public PageTest {
         .run("return Array.from(buoyancy_hydrostatics.plots[arguments[0]].series[arguments[1]].values)", plot,
              series)
         .get<std::vector<double>>();
-  }
-  static std::string text_of(const std::string& selector) {
-    return browser()
-        .run("return document.querySelector(arguments[0]).textContent", selector)
-        .get<std::string>();
   }
   // Where a point of B is drawn in W.
   static std::array<double, 3> drawn(double x, double y, double z) {

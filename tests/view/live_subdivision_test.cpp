@@ -48,9 +48,7 @@ TEST_F(LivePageOfTanks, DrawsLiquidsAndListsThem) {
   EXPECT_EQ(rows[0],
             nlohmann::json({"engine room", "compartment", "2", "permeability 0.85", "25", "–", "–"}));
   EXPECT_EQ(rows[2], nlohmann::json({"wide", "tank", "12", "1,000 kg/m³", "–", "6", "50"}));
-  EXPECT_TRUE(
-      contains(browser().run("return document.getElementById('legend').textContent;").get<std::string>(),
-               "liquid in a tank"));
+  EXPECT_TRUE(contains(text_of("#legend"), "liquid in a tank"));
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 

@@ -17,6 +17,11 @@ namespace buoyancy::view {
 class PageTest : public testing::Test {
  protected:
   static Browser& browser() { return *browser_; }
+  static std::string text_of(const std::string& selector) {
+    return browser()
+        .run("return document.querySelector(arguments[0]).textContent", selector)
+        .get<std::string>();
+  }
 
   // Not in SetUpTestSuite(): if that fails, GoogleTest reports [  SKIPPED ], which CTest accepts.
   void SetUp() override {

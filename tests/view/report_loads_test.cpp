@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,16 +10,12 @@
 
 #include "engine/request_handler.h"
 #include "messages/conversions.h"
-#include "tests/support/build_paths.h"
 #include "tests/support/byte_vector.h"
-#include "tests/support/child_process.h"
 #include "tests/support/contains.h"
 #include "tests/support/csv.h"
 #include "tests/support/scene_of.h"
-#include "tests/support/temp_dir.h"
-#include "tests/support/timeouts.h"
 #include "tests/view/moving_bodies.h"
-#include "tests/view/page_test.h"
+#include "tests/view/report_page_test.h"
 
 namespace buoyancy::view {
 namespace {
@@ -31,27 +26,16 @@ constexpr double kFloatRounding = 1e-7;         // of the page's numbers, relati
 constexpr std::size_t kRowsBetweenChecks = 100;
 constexpr double kHalfStep = 1.0;  // [N, N m], what drag changes in half a step of the client
 
-FinishedProcess run_program(std::vector<std::string> command) {
-  return run_to_end(command_of(std::move(command)), kWaitTimeout);
-}
-
-class ReportPageOfLoads : public PageTest {
+class ReportPageOfLoads : public ReportPageTest {
  protected:
-  void open(const std::string& scene, const std::string& run) {
-    const FinishedProcess made =
-        run_program({built_program("buoyancy-report"), "--scene", scene, run, directory_.path("run.html")});
-    ASSERT_EQ(made.exit_code, 0) << made.standard_error;
-    browser().open_file(directory_.path("run.html"));
-    browser().wait_until("window.buoyancy_report !== undefined");
-  }
   // A run of buoyancy-client, which simulates body 1. Its rows are few enough to be in the page all.
   void open_simulation() {
     const std::string scene = directory_.write("moving.toml", moving_bodies());
     const std::string run = directory_.path("run.csv");
-    const FinishedProcess simulated = run_program(
-        {built_program("buoyancy-client"), "--scene", scene, "--embedded", "--duration", "3", "--csv", run});
+    const FinishedProcess simulated =
+        run_program("buoyancy-client", {"--scene", scene, "--embedded", "--duration", "3", "--csv", run});
     ASSERT_EQ(simulated.exit_code, 0) << simulated.standard_error;
-    open(scene, run);
+    open_run(scene, run);
   }
 
   static void select_axis(const std::string& value) {
@@ -72,8 +56,6 @@ class ReportPageOfLoads : public PageTest {
   static nlohmann::json drawn_parts() {
     return browser().run("return buoyancy_report.plots.loads.stack.series.map((one) => one.name)");
   }
-
-  TempDir directory_;
 };
 
 struct Row {
@@ -203,9 +185,7 @@ TEST_F(ReportPageOfLoads, SaysWhatForcesAndTitlesMean) {
   const nlohmann::json titles =
       browser().run("const { force, energy } = buoyancy_report.plots; return [force.title, energy.title];");
   EXPECT_EQ(titles, nlohmann::json({"Force of the water", "Mechanical energy, not conserved"}));
-  EXPECT_TRUE(
-      contains(browser().run("return document.getElementById('tables').textContent").get<std::string>(),
-               "Current: [0.5, -0.25, 0.125] m/s."));
+  EXPECT_TRUE(contains(text_of("#tables"), "Current: [0.5, -0.25, 0.125] m/s."));
   EXPECT_EQ(browser().run("return buoyancy_report.plots.loads.note.textContent"),
             "The loads were computed from the scene.");
   EXPECT_EQ(
@@ -227,7 +207,7 @@ TEST_F(ReportPageOfLoads, ComputesEnergyThatClientRecords) {
   std::string without_energy;
   for (std::string line; std::getline(file, line);) without_energy += line.substr(0, line.rfind(',')) + '\n';
   ASSERT_NO_FATAL_FAILURE(
-      open(directory_.path("moving.toml"), directory_.write("without_energy.csv", without_energy)));
+      open_run(directory_.path("moving.toml"), directory_.write("without_energy.csv", without_energy)));
   const std::vector<double> computed = energies();
   ASSERT_EQ(computed.size(), recorded.size());
   for (std::size_t i = 0; i < recorded.size(); i += kRowsBetweenChecks) {
@@ -244,7 +224,7 @@ TEST_F(ReportPageOfLoads, ShowsLoadsOfSelectedBody) {
     }
   }
   ASSERT_NO_FATAL_FAILURE(
-      open(directory_.write("moving.toml", moving_bodies()), directory_.write("poses.csv", run)));
+      open_run(directory_.write("moving.toml", moving_bodies()), directory_.write("poses.csv", run)));
   const auto shown = [](int id) {
     return browser().run(
         "buoyancy_report.select(arguments[0]); const { loads, force } = buoyancy_report.plots;"

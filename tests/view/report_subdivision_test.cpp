@@ -11,12 +11,8 @@
 #include "base/format.h"
 #include "engine/subdivision_load.h"
 #include "scene/scene.h"
-#include "tests/support/build_paths.h"
-#include "tests/support/child_process.h"
 #include "tests/support/contains.h"
-#include "tests/support/temp_dir.h"
-#include "tests/support/timeouts.h"
-#include "tests/view/page_test.h"
+#include "tests/view/report_page_test.h"
 #include "tests/view/subdivided_hull.h"
 
 namespace buoyancy::view {
@@ -24,7 +20,7 @@ namespace {
 
 constexpr double kFloatRounding = 2e-6;  // of the page's coordinates, which are float32
 
-class ReportPageOfTanks : public PageTest {
+class ReportPageOfTanks : public ReportPageTest {
  protected:
   void SetUp() override {
     PageTest::SetUp();
@@ -41,26 +37,9 @@ class ReportPageOfTanks : public PageTest {
       for (const double component : {q.w(), q.x(), q.y(), q.z()}) run += ',' + format_shortest(component);
       run += '\n';
     }
-    open_run(directory_.write("run.csv", run), 0);
-  }
-  void open_run(const std::string& run, int exit_code) {
-    const FinishedProcess made = run_to_end(command_of({built_program("buoyancy-report"), "--scene",
-                                                        scene_path_, run, directory_.path("run.html")}),
-                                            kWaitTimeout);
-    ASSERT_EQ(made.exit_code, exit_code) << made.standard_error;
-    browser().open_file(directory_.path("run.html"));
-    browser().wait_until("window.buoyancy_report !== undefined");
+    open_run(scene_path_, directory_.write("run.csv", run));
   }
 
-  static std::array<int, 2> pixel_of(double x, double y, double z) {
-    const nlohmann::json at = browser().run(
-        "const box = document.getElementById('canvas').getBoundingClientRect();"
-        "const [x, y] = buoyancy_report.scene.project(arguments[0]); return [x + box.left, y + box.top];",
-        std::array{x, y, z});
-    return {static_cast<int>(at[0].get<double>()), static_cast<int>(at[1].get<double>())};
-  }
-
-  TempDir directory_;
   std::string scene_path_;
 };
 
@@ -153,12 +132,7 @@ TEST_F(ReportPageOfTanks, ShowsLiquidUpToItsLevelThroughHull) {
   const std::array<int, 2> bottom = pixel_of(-1.2, -1.0, 0.9);
   EXPECT_NEAR(share(top[0], top[1], bottom[1]), 0.5, 0.04);
   // The hull keeps its waterline.
-  const std::array<int, 2> line = pixel_of(1.9, -1.5, 0.0);
-  bool white = false;
-  for (int dy = -3; dy <= 3; ++dy) {
-    white = white || is_near({255, 255, 255}, 45)(image.pixel(line[0], line[1] + dy));
-  }
-  EXPECT_TRUE(white);
+  EXPECT_TRUE(waterline_at(image, 1.9, -1.5, 0.0));
 }
 
 TEST_F(ReportPageOfTanks, TintsAndListsWhatIsInside) {
@@ -178,16 +152,15 @@ TEST_F(ReportPageOfTanks, TintsAndListsWhatIsInside) {
                                    {"hold", "compartment", "2", "permeability 1", "0", "–", "–"},
                                    {"wide", "tank", "12", "1,000 kg/m³", "–", "6", "50"},
                                    {"ring", "tank", "3", "850 kg/m³", "–", "1.25", "41.67"}}));
-  EXPECT_TRUE(
-      contains(browser().run("return document.getElementById('legend').textContent;").get<std::string>(),
-               "flooded compartment"));
+  EXPECT_TRUE(contains(text_of("#legend"), "flooded compartment"));
   EXPECT_EQ(browser().run("return buoyancy_report.data.model.meshes.length;"), 6)
       << "hull with its part, two compartments, two tanks, box";
 }
 
 TEST_F(ReportPageOfTanks, ShowsConditionsFromTheirTimeOn) {
   ASSERT_NO_FATAL_FAILURE(
-      open_run(directory_.write("run.lcmlog", log_of_conditions()), 1));  // one message cannot be used
+      // One message cannot be used.
+      open_run(scene_path_, directory_.write("run.lcmlog", log_of_conditions()), 1));
   const nlohmann::json shown = browser().run(R"(
     return [0, 1, 2, 3].map((time) => {
       buoyancy_report.seek(time);

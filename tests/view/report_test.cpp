@@ -2,23 +2,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "tests/service/one_box_scene.h"
-#include "tests/support/build_paths.h"
-#include "tests/support/child_process.h"
 #include "tests/support/contains.h"
 #include "tests/support/csv.h"
-#include "tests/support/temp_dir.h"
-#include "tests/support/timeouts.h"
-#include "tests/view/page_test.h"
+#include "tests/view/report_page_test.h"
 
 namespace buoyancy::view {
 namespace {
@@ -31,57 +25,40 @@ position = [0, 0, -1]
 linear_damping = 8000
 )";
 
-FinishedProcess report(const std::vector<std::string>& arguments) {
-  std::vector<std::string> command{built_program("buoyancy-report")};
-  command.insert(command.end(), arguments.begin(), arguments.end());
-  return run_to_end(command_of(std::move(command)), kWaitTimeout);
+FinishedProcess report(std::vector<std::string> arguments) {
+  return run_program("buoyancy-report", std::move(arguments));
 }
 
-class ReportPage : public PageTest {
+class ReportPage : public ReportPageTest {
  protected:
   static void SetUpTestSuite() {
-    directory_ = std::make_unique<TempDir>();
-    const std::string scene = directory_->write("box.toml", kBobbingBox);
+    shared_ = std::make_unique<TempDir>();
+    const std::string scene = shared_->write("box.toml", kBobbingBox);
     const FinishedProcess simulated =
-        run_to_end(command_of({built_program("buoyancy-client"), "--scene", scene, "--embedded", "--duration",
-                               "5", "--csv", csv()}),
-                   kWaitTimeout);
+        run_program("buoyancy-client", {"--scene", scene, "--embedded", "--duration", "5", "--csv", csv()});
     written_ = simulated.exit_code == 0 && report({"--scene", scene, csv(), page()}).exit_code == 0;
   }
   static void TearDownTestSuite() {
     PageTest::TearDownTestSuite();
-    directory_.reset();
+    shared_.reset();
   }
 
   void SetUp() override {
     ASSERT_TRUE(written_) << "buoyancy-client or buoyancy-report failed";
     PageTest::SetUp();
-    open();
+    open_page(page());
   }
 
-  static std::string csv() { return directory_->path("run.csv"); }
-  static std::string page() { return directory_->path("run.html"); }
-  static void open() {
-    browser().open_file(page());
-    browser().wait_until("window.buoyancy_report !== undefined");
-  }
+  static std::string csv() { return shared_->path("run.csv"); }
+  static std::string page() { return shared_->path("run.html"); }
 
   static std::vector<double> recorded(const std::string& name) { return csv_column(read_file(csv()), name); }
 
   static void go_to(double time) { browser().run("buoyancy_report.seek(arguments[0])", time); }
   static double time() { return browser().run("return buoyancy_report.state().time").get<double>(); }
 
-  // The pixel of a screenshot at which a point in W is drawn.
-  static std::array<int, 2> pixel_of(double x, double y, double z) {
-    const nlohmann::json at = browser().run(
-        "const box = document.getElementById('canvas').getBoundingClientRect();"
-        "const [x, y] = buoyancy_report.scene.project(arguments[0]); return [x + box.left, y + box.top];",
-        std::array{x, y, z});
-    return {static_cast<int>(at[0].get<double>()), static_cast<int>(at[1].get<double>())};
-  }
-
  private:
-  static inline std::unique_ptr<TempDir> directory_;
+  static inline std::unique_ptr<TempDir> shared_;
   static inline bool written_ = false;
 };
 
@@ -110,11 +87,8 @@ TEST_F(ReportPage, DrawsSkyWaterHullAndWaterline) {
   EXPECT_LT(wetted.red + wetted.green + wetted.blue, water.red + water.green + water.blue - 60)
       << "hull, not water";
 
+  EXPECT_TRUE(waterline_at(image, 0.7, -1.5, 0.0)) << "at the face's middle";
   const std::array<int, 2> line = pixel_of(0.7, -1.5, 0.0);
-  bool white = false;
-  for (int dy = -3; dy <= 3; ++dy)
-    white = white || is_near({255, 255, 255}, 45)(image.pixel(line[0], line[1] + dy));
-  EXPECT_TRUE(white) << "waterline at the face's middle";
   EXPECT_FALSE(is_near({255, 255, 255}, 45)(at({line[0], line[1] - 12})));
 }
 
@@ -188,20 +162,19 @@ TEST_F(ReportPage, DistinguishesDryAndWettedByLuminance) {
 }
 
 TEST_F(ReportPage, RefusesToOverwriteInputAndInvalidThreeJs) {
-  const TempDir directory;
-  const std::string scene = directory.write("box.toml", kBobbingBox);
+  const std::string scene = directory_.write("box.toml", kBobbingBox);
   EXPECT_EQ(report({"--scene", scene, csv(), scene}).exit_code, 2);
   EXPECT_EQ(report({"--scene", scene, csv(), csv()}).exit_code, 2);
   EXPECT_EQ(read_file(scene), kBobbingBox);
   const FinishedProcess refused =
-      report({"--scene", scene, csv(), directory.path("run.html"), "--three", directory.path("")});
+      report({"--scene", scene, csv(), directory_.path("run.html"), "--three", directory_.path("")});
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_TRUE(contains(refused.standard_error, "cannot be read"));
 }
 
 TEST_F(ReportPage, FitsPhoneScreen) {
   browser().resize(kPhone);
-  open();
+  open_page(page());
   EXPECT_LE(browser().run("return document.documentElement.scrollWidth").get<int>(), kPhone.width);
   EXPECT_GT(browser().region_of("#canvas").width, 300);
   EXPECT_EQ(browser().run("return [...document.querySelectorAll('caption span')]"
@@ -231,7 +204,6 @@ const std::string kRunHeader =
     "utime,body_id,px,py,pz,qw,qx,qy,qz,status,fx,fy,fz,tx,ty,tz,volume,bx,by,bz,energy\n";
 
 TEST_F(ReportPage, PlotsGapsForFailedResponsesAndInvalidPoses) {
-  const TempDir directory;
   const std::string run = kRunHeader +
                           "0,1,0,0,0.1,1,0,0,0,0,0,0,1e5,0,0,0,1,0,0,0,5\n"
                           "1000000,1,0,0,0.2,1,0,0,0,0,0,0,2e5,0,0,0,1,0,0,0,5\n"
@@ -240,11 +212,8 @@ TEST_F(ReportPage, PlotsGapsForFailedResponsesAndInvalidPoses) {
                           "4000000,1,nan,0,0.5,1,0,0,0,2,0,0,0,0,0,0,0,0,0,0,0\n"
                           "5000000,1,0,0,0.6,0,0,0,0,3,0,0,0,0,0,0,0,0,0,0,0\n"
                           "6000000,1,0,0,0.7,1,0,0,0,99,0,0,0,0,0,0,0,0,0,0,0\n";
-  const FinishedProcess made = report({"--scene", directory.write("box.toml", kBobbingBox),
-                                       directory.write("run.csv", run), directory.path("run.html")});
-  ASSERT_EQ(made.exit_code, 0) << made.standard_error;
-  browser().open_file(directory.path("run.html"));
-  browser().wait_until("window.buoyancy_report !== undefined");
+  ASSERT_NO_FATAL_FAILURE(
+      open_run(directory_.write("box.toml", kBobbingBox), directory_.write("run.csv", run)));
 
   const auto plotted = [](const std::string& plot) {
     return browser().run("return Array.from(buoyancy_report.plots[arguments[0]].series[0].values)", plot);
@@ -295,23 +264,21 @@ TEST_F(ReportPage, OmitsStatusTableIfAllRowsAreOk) {
 }
 
 TEST_F(ReportPage, ListsShownBodiesAndSummarizesOthers) {
-  const TempDir directory;
   std::string text = kTestWater;
   for (const char* id : {"1", "2", "3", "5", "6"}) {
     text += std::string("[[body]]\nid = ") + id + "\nshape = { type = \"box\", size = [2, 3, 4] }\n";
   }
-  const std::string run = directory.write("run.csv", kRunHeader +
-                                                         "0,1,0,0,0,1,0,0,0,0,0,0,700,0,0,0,1,0,0,-5,0\n"
-                                                         "0,2,0,0,0,1,0,0,0,0,0,0,625,0,0,0,1,0,0,0,0\n"
-                                                         "0,3,0,0,0,1,0,0,0,6,0,0,0,0,0,0,0,0,0,0,0\n"
-                                                         "0,5,0,0,0,1,0,0,0,0,0,0,9,0,0,0,1,0,0,0,0\n");
+  const std::string run = directory_.write("run.csv", kRunHeader +
+                                                          "0,1,0,0,0,1,0,0,0,0,0,0,700,0,0,0,1,0,0,-5,0\n"
+                                                          "0,2,0,0,0,1,0,0,0,0,0,0,625,0,0,0,1,0,0,0,0\n"
+                                                          "0,3,0,0,0,1,0,0,0,6,0,0,0,0,0,0,0,0,0,0,0\n"
+                                                          "0,5,0,0,0,1,0,0,0,0,0,0,9,0,0,0,1,0,0,0,0\n");
   const FinishedProcess made = report(
-      {"--scene", directory.write("five.toml", text), "--bodies", "1,5", run, directory.path("run.html")});
+      {"--scene", directory_.write("five.toml", text), "--bodies", "1,5", run, directory_.path("run.html")});
   ASSERT_EQ(made.exit_code, 0) << made.standard_error;
   EXPECT_TRUE(
       contains(made.standard_output, "2 bodies, 2 rows; 2 more bodies only as a summary (see --bodies)"));
-  browser().open_file(directory.path("run.html"));
-  browser().wait_until("window.buoyancy_report !== undefined");
+  open_page(directory_.path("run.html"));
   EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
   EXPECT_EQ(browser().run("return document.getElementById('subtitle').textContent"), "2 of 4 bodies, 0 s");
   const nlohmann::json notices = browser().run(

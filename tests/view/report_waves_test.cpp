@@ -9,14 +9,9 @@
 
 #include "messages/request.h"
 #include "messages/sea_state.h"
-#include "recording/event_log.h"
-#include "tests/support/build_paths.h"
-#include "tests/support/byte_vector.h"
-#include "tests/support/child_process.h"
+#include "tests/support/recorded_log.h"
 #include "tests/support/scene_of.h"
-#include "tests/support/temp_dir.h"
-#include "tests/support/timeouts.h"
-#include "tests/view/page_test.h"
+#include "tests/view/report_page_test.h"
 #include "tests/view/waves_on_page.h"
 
 namespace buoyancy::view {
@@ -32,7 +27,7 @@ height = 1.0
 period = 8.0
 )";
 
-class ReportPageInWaves : public PageTest {
+class ReportPageInWaves : public ReportPageTest {
  protected:
   // Opens the page of a run in which the box has a row every 5 s.
   void open(const std::string& scene, double x, double y, double z) {
@@ -41,37 +36,12 @@ class ReportPageInWaves : public PageTest {
       run += std::to_string(kTodayUtime + 1'000'000LL * second) + ",1," + std::to_string(x) + "," +
              std::to_string(y) + "," + std::to_string(z) + ",1,0,0,0,0,0,0,1e5,0,0,0,12,0,0,-1\n";
     }
-    open_run(scene, directory_.write("run.csv", run));
-  }
-  void open_run(const std::string& scene, const std::string& run) {
-    const FinishedProcess made =
-        run_to_end(command_of({built_program("buoyancy-report"), "--scene",
-                               directory_.write("waves.toml", scene), run, directory_.path("run.html")}),
-                   kWaitTimeout);
-    ASSERT_EQ(made.exit_code, 0) << made.standard_error;
-    browser().open_file(directory_.path("run.html"));
-    browser().wait_until("window.buoyancy_report !== undefined");
+    open_run(directory_.write("waves.toml", scene), directory_.write("run.csv", run));
   }
 
   static void go_to(std::int64_t utime) {
     browser().run("buoyancy_report.seek(arguments[0])", 1e-6 * static_cast<double>(utime - kTodayUtime));
   }
-
-  // Whether a pixel of the waterline is drawn within 3 pixels of a point in W.
-  static bool waterline_at(const Image& image, double x, double y, double z) {
-    const nlohmann::json at = browser().run(
-        "const box = document.getElementById('canvas').getBoundingClientRect();"
-        "const [x, y] = buoyancy_report.scene.project(arguments[0]); return [x + box.left, y + box.top];",
-        std::array{x, y, z});
-    for (int dy = -3; dy <= 3; ++dy) {
-      const Colour colour =
-          image.pixel(static_cast<int>(at[0].get<double>()), static_cast<int>(at[1].get<double>()) + dy);
-      if (is_near({255, 255, 255}, 45)(colour)) return true;
-    }
-    return false;
-  }
-
-  TempDir directory_;
 };
 
 TEST_F(ReportPageInWaves, DrawsSurfaceOfSea) {
@@ -110,7 +80,8 @@ TEST_F(ReportPageInWaves, DrawsEachReceivedSeaWhileItHolds) {
                        .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0}}};
     log.add(utime, kStatesChannel, encoded(request));
   }
-  ASSERT_NO_FATAL_FAILURE(open_run(received, directory_.write("run.lcmlog", log.text())));
+  ASSERT_NO_FATAL_FAILURE(
+      open_run(directory_.write("waves.toml", received), directory_.write("run.lcmlog", log.text())));
 
   go_to(kTodayUtime + 5'000'000);
   EXPECT_EQ(browser().run("const { scene } = buoyancy_report; return [scene.waves, scene.water.visible];"),

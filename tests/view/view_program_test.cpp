@@ -293,10 +293,6 @@ TEST(ViewProgram, WarnsIfMessagesMayNotFitReceiveBuffer) {
 TEST(ViewProgram, ReportsErrorsInOneLineAndExitCode) {
   TempDir directory;
   const std::string scene = directory.write("scene.toml", kScene);
-  const auto run_view = [&](std::vector<std::string> options) {
-    options.insert(options.begin(), built_program("buoyancy-view"));
-    return run_to_end(command_of(std::move(options)), kWaitTimeout);
-  };
   for (const std::vector<std::string>& options : {std::vector<std::string>{},
                                                   {"--scene", scene, "--port", "65536"},
                                                   {"--scene", scene, "--port", "-1"},
@@ -309,13 +305,14 @@ TEST(ViewProgram, ReportsErrorsInOneLineAndExitCode) {
                                                   {"--scene", scene, "--pose", "HULL=77"},
                                                   {"--scene", scene, "--pose", "BUOYANCY_STATUS=1"},
                                                   {"--scene", directory.path("absent.toml")}}) {
-    const FinishedProcess view = run_view(options);
+    const FinishedProcess view = run_program("buoyancy-view", options);
     EXPECT_EQ(view.exit_code, 2) << testing::PrintToString(options);
     EXPECT_TRUE(view.standard_error.starts_with("buoyancy-view: ")) << view.standard_error;
     EXPECT_EQ(view.standard_output, "");
   }
   const RunningView other(kScene);
-  const FinishedProcess taken = run_view({"--scene", scene, "--port", std::to_string(other.port())});
+  const FinishedProcess taken =
+      run_program("buoyancy-view", {"--scene", scene, "--port", std::to_string(other.port())});
   EXPECT_EQ(taken.exit_code, 1);
   EXPECT_TRUE(contains(taken.standard_error, "Address already in use"));
 }
