@@ -8,14 +8,13 @@ add_library(
   buoyancy_oracle STATIC
   ${CMAKE_CURRENT_LIST_DIR}/ball.cpp
   ${CMAKE_CURRENT_LIST_DIR}/exact_oracle.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/rational.cpp
   ${CMAKE_CURRENT_LIST_DIR}/stiffness_autodiff.cpp
   ${CMAKE_CURRENT_LIST_DIR}/truth.cpp
   ${CMAKE_CURRENT_LIST_DIR}/wetted_moments_reference.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../hydrostatics/random_poses.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../hydrostatics/test_meshes.cpp)
 target_include_directories(buoyancy_oracle PUBLIC ${PROJECT_SOURCE_DIR})
-target_link_libraries(buoyancy_oracle PUBLIC buoyancy_hydrostatics ${GMP_LIBRARY} PRIVATE buoyancy_compile_options)
+target_link_libraries(buoyancy_oracle PUBLIC buoyancy_hydrostatics Boost::headers ${GMP_LIBRARY} PRIVATE buoyancy_compile_options)
 
 add_library(buoyancy_wave_reference STATIC ${CMAKE_CURRENT_LIST_DIR}/reference_load.cpp
                                            ${CMAKE_CURRENT_LIST_DIR}/reference_sea.cpp)
