@@ -6,12 +6,9 @@
 #include "flotation/floating_body.h"
 #include "geometry/shapes.h"
 #include "hydrostatics/hydrostatic_mesh.h"
+#include "tests/hydrostatics/test_meshes.h"
 
 namespace buoyancy {
-
-inline HydrostaticMesh mesh_of(const Shape& shape) {
-  return make_hydrostatic_mesh({make_shape(shape), {}});
-}
 
 // mesh: outlives the body. relative_density: of the mass to that of the water which the mesh can displace.
 inline FloatingBody body_of(const HydrostaticMesh& mesh, double relative_density,

@@ -12,16 +12,6 @@
 namespace buoyancy {
 namespace {
 
-TriangleMesh turned(TriangleMesh mesh, const Eigen::Quaterniond& q, const Vec3& by = Vec3::Zero()) {
-  for (std::size_t i = 0; i < mesh.x.size(); ++i) {
-    const Vec3 moved = q * Vec3(mesh.x[i], mesh.y[i], mesh.z[i]) + by;
-    mesh.x[i] = moved.x();
-    mesh.y[i] = moved.y();
-    mesh.z[i] = moved.z();
-  }
-  return mesh;
-}
-
 double common(const TriangleMesh& a, const TriangleMesh& b, const Vec3& offset = Vec3::Zero()) {
   return common_volume({&a, Vec3::Zero()}, {&b, offset});
 }

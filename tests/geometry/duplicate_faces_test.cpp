@@ -8,13 +8,10 @@
 
 #include "geometry/mesh_validation.h"
 #include "tests/geometry/sample_meshes.h"
+#include "tests/geometry/validated.h"
 
 namespace buoyancy {
 namespace {
-
-MeshValidation validate(const TriangleMesh& mesh) {
-  return validate_mesh({mesh, {}}, "hull.stl");
-}
 
 const RepairStep* step_of(const MeshValidation& validation, RepairKind kind) {
   for (const RepairStep& step : validation.report.repair.steps) {

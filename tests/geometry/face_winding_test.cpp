@@ -7,6 +7,7 @@
 
 #include "geometry/mesh_validation.h"
 #include "tests/geometry/sample_meshes.h"
+#include "tests/geometry/validated.h"
 
 namespace buoyancy {
 namespace {
@@ -15,10 +16,6 @@ TriangleMesh with_turned_faces(TriangleMesh mesh, std::size_t stride) {
   for (std::size_t f = 0; f < mesh.triangles.size(); f += stride)
     std::swap(mesh.triangles[f][0], mesh.triangles[f][1]);
   return mesh;
-}
-
-MeshValidation validate(const TriangleMesh& mesh) {
-  return validate_mesh({mesh, {}}, "hull.stl");
 }
 
 TEST(FaceWinding, TurnsTheSmallerPart) {

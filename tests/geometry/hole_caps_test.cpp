@@ -9,14 +9,11 @@
 #include "geometry/mesh_repair.h"
 #include "geometry/mesh_validation.h"
 #include "tests/geometry/sample_meshes.h"
+#include "tests/geometry/validated.h"
 #include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
-
-MeshValidation validate(const TriangleMesh& mesh, OpenPolicy open = OpenPolicy::kRefuse) {
-  return validate_mesh({mesh, {}}, "hull.stl", {.open = open});
-}
 
 // Leaves a triangle with legs of this length open in a face with a right angle at its first corner.
 TriangleMesh with_pinhole(TriangleMesh mesh, std::size_t face, double leg) {

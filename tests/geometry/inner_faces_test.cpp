@@ -12,13 +12,10 @@
 #include "geometry/mesh_validation.h"
 #include "geometry/welding.h"
 #include "tests/geometry/sample_meshes.h"
+#include "tests/geometry/validated.h"
 
 namespace buoyancy {
 namespace {
-
-MeshValidation validate(const TriangleMesh& mesh, OpenPolicy open = OpenPolicy::kRefuse) {
-  return validate_mesh({mesh, {}}, "hull.stl", {.open = open});
-}
 
 const RepairStep* step_of(const MeshValidation& validation, RepairKind kind) {
   for (const RepairStep& step : validation.report.repair.steps) {

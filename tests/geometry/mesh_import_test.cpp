@@ -14,6 +14,7 @@
 #include "geometry/mesh_format.h"
 #include "geometry/mesh_validation.h"
 #include "tests/geometry/mesh_files.h"
+#include "tests/geometry/sample_meshes.h"
 #include "tests/geometry/shared_mesh_files.h"
 #include "tests/support/contains.h"
 
@@ -22,15 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 const fs::path kTestModels = "/usr/share/assimp/models";  // Debian's assimp-testmodels
-
-// Returns the signed volume [m^3], positive if triangles face outward.
-double volume(const TriangleMesh& mesh) {
-  double six_volumes = 0.0;
-  for (const Triangle& t : mesh.triangles) {
-    six_volumes += mesh.vertex(t[0]).dot(mesh.vertex(t[1]).cross(mesh.vertex(t[2])));
-  }
-  return six_volumes / 6.0;
-}
 
 ImportedMesh imported(const fs::path& file) {
   Expected<ImportedMesh> result = import_mesh(file);
@@ -49,7 +41,7 @@ TEST_F(MeshImport, ReadsTetrahedronFromEveryFormat) {
     SCOPED_TRACE(name);
     const ImportedMesh found = imported(directory_.write(name, content));
     EXPECT_EQ(found.mesh.triangles.size(), 4U);
-    EXPECT_NEAR(volume(found.mesh), 1.0 / 6.0, 1e-15);
+    EXPECT_NEAR(volume_of(found.mesh), 1.0 / 6.0, 1e-15);
     EXPECT_EQ(found.source.nodes, 1);
     EXPECT_EQ(found.source.ignored_primitives, 0);
     EXPECT_EQ(found.source.format, to_string(*format_from_path(name)));
@@ -75,7 +67,7 @@ TEST_F(MeshImport, KeepsUnweldedVerticesAndDegenerateTriangles) {
       "small.off",
       "OFF\n4 5 0\n0 0 0\n1e-6 0 0\n0 1e-6 0\n0 0 1e-6\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 1 1\n"));
   EXPECT_EQ(off.mesh.triangles.size(), 5U);
-  EXPECT_NEAR(volume(off.mesh), 1e-18 / 6.0, 1e-24);
+  EXPECT_NEAR(volume_of(off.mesh), 1e-18 / 6.0, 1e-24);
 }
 
 TEST_F(MeshImport, SplitsPolygonsIntoTriangles) {
@@ -85,7 +77,7 @@ TEST_F(MeshImport, SplitsPolygonsIntoTriangles) {
                                 "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\nv 1 0.25 1\n"
                                 "f 5 4 3 2 1\nf 1 2 6\nf 2 3 6\nf 3 4 6\nf 4 5 6\nf 5 1 6\n"));
   EXPECT_EQ(found.mesh.triangles.size(), 8U);
-  EXPECT_NEAR(volume(found.mesh), 2.5 / 3.0, 1e-12);  // base area 4 - 1.5, height 1
+  EXPECT_NEAR(volume_of(found.mesh), 2.5 / 3.0, 1e-12);  // base area 4 - 1.5, height 1
   EXPECT_EQ(found.source.polygons.polygons, 1);
   EXPECT_EQ(found.source.polygons.non_planar, 0);
 }
@@ -144,7 +136,7 @@ TEST_F(MeshImport, ReadsPolygonsOfMirroredNodes) {
   const ImportedMesh found = imported(directory_.write("mirrored.dae", collada));
   EXPECT_EQ(found.source.polygons.polygons, 1);
   EXPECT_EQ(found.mesh.triangles.size(), 4U);
-  EXPECT_NEAR(volume(found.mesh), 1.0 / 6.0, 1e-15);
+  EXPECT_NEAR(volume_of(found.mesh), 1.0 / 6.0, 1e-15);
   EXPECT_EQ(bounding_box(found.mesh).min_B.y(), -1.0);
 }
 
@@ -153,7 +145,7 @@ TEST_F(MeshImport, CountsIgnoredPointsAndLines) {
       imported(directory_.write("mixed.obj", tetrahedron::obj() + "l 1 2 3\np 1\np 2\n"));
   EXPECT_EQ(found.mesh.triangles.size(), 4U);
   EXPECT_EQ(found.source.ignored_primitives, 4);  // a line of three points is two lines
-  EXPECT_NEAR(volume(found.mesh), 1.0 / 6.0, 1e-15);
+  EXPECT_NEAR(volume_of(found.mesh), 1.0 / 6.0, 1e-15);
 }
 
 TEST_F(MeshImport, AppliesNodeTransformsInDouble) {
@@ -178,7 +170,7 @@ TEST_F(MeshImport, PlacesEveryInstance) {
   EXPECT_EQ(found.source.nodes, 3);
   EXPECT_EQ(found.mesh.triangles.size(), 12U);
   EXPECT_EQ(found.mesh.vertex_count(), 12U);
-  EXPECT_NEAR(volume(found.mesh), 3.0 / 6.0, 1e-6);
+  EXPECT_NEAR(volume_of(found.mesh), 3.0 / 6.0, 1e-6);
   const BoundingBox box = bounding_box(found.mesh);
   EXPECT_EQ(box.max_B.x(), 6.0);
   EXPECT_NEAR(box.min_B.x(), -1.0, 1e-6);  // the third is rotated by 90 degrees about z
@@ -189,10 +181,10 @@ TEST_F(MeshImport, ReversesWindingOfMirroredNodes) {
   const ImportedMesh once =
       imported(directory_.write("mirrored.gltf", tetrahedron::gltf(R"([{"scale":[-1,1,1],"mesh":0}])")));
   EXPECT_EQ(bounding_box(once.mesh).min_B.x(), -1.0);
-  EXPECT_NEAR(volume(once.mesh), 1.0 / 6.0, 1e-15);
+  EXPECT_NEAR(volume_of(once.mesh), 1.0 / 6.0, 1e-15);
   const ImportedMesh twice = imported(directory_.write(
       "twice.gltf", tetrahedron::gltf(R"([{"scale":[-1,1,1],"children":[1]},{"scale":[1,-3,1],"mesh":0}])")));
-  EXPECT_NEAR(volume(twice.mesh), 3.0 / 6.0, 1e-15);
+  EXPECT_NEAR(volume_of(twice.mesh), 3.0 / 6.0, 1e-15);
 }
 
 TEST_F(MeshImport, IgnoresUnreferencedMeshes) {
@@ -234,7 +226,7 @@ TEST_F(MeshImport, KeepsAxesAndAppliesUnitOfColladaFiles) {
       there = there || (found.mesh.vertex(static_cast<std::int32_t>(v)) - c.top_B).norm() < 1e-8;
     }
     EXPECT_TRUE(there);
-    EXPECT_GT(volume(found.mesh), 0.0);
+    EXPECT_GT(volume_of(found.mesh), 0.0);
   }
 }
 
@@ -258,7 +250,7 @@ TEST_F(MeshImport, KeepsAxesOf3dsFiles) {
   EXPECT_EQ(found.source.note, "");
   EXPECT_EQ(bounding_box(found.mesh).min_B, Vec3(0, 0, 0));
   EXPECT_EQ(bounding_box(found.mesh).max_B, Vec3(1, 1, 1));
-  EXPECT_GT(volume(found.mesh), 0.0);
+  EXPECT_GT(volume_of(found.mesh), 0.0);
 }
 
 TEST_F(MeshImport, ReportsNoAxesIfFormatHasNone) {
@@ -320,7 +312,7 @@ TEST(MeshImportRealFiles, ReadDuck) {
   EXPECT_EQ(found.mesh.triangles.size(), 2U * 17U + 92U + 4U * 2'041U + 2U * 2U);
   EXPECT_EQ(found.source.format, "Collada");
   EXPECT_EQ(found.source.up_axis, "y");
-  EXPECT_GT(volume(found.mesh), 0.0);
+  EXPECT_GT(volume_of(found.mesh), 0.0);
 }
 
 }  // namespace

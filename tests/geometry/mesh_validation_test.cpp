@@ -8,14 +8,11 @@
 
 #include "geometry/welding.h"
 #include "tests/geometry/sample_meshes.h"
+#include "tests/geometry/validated.h"
 #include "tests/support/contains.h"
 
 namespace buoyancy {
 namespace {
-
-MeshValidation validate(const TriangleMesh& mesh, OpenPolicy open = OpenPolicy::kRefuse) {
-  return validate_mesh({mesh, {}}, "hull.stl", {open, false});
-}
 
 void expect_refused(const MeshValidation& validation, const std::string& text) {
   EXPECT_FALSE(validation.mesh);

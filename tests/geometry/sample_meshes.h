@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "geometry/shapes.h"
 #include "geometry/triangle_mesh.h"
 
@@ -75,15 +77,34 @@ inline TriangleMesh without_face(TriangleMesh mesh, std::size_t face) {
   return mesh;
 }
 
-// Maps each vertex x_B to rotation x_B + translation_B.
-inline TriangleMesh moved_mesh(TriangleMesh mesh, const Mat3& rotation, const Vec3& translation_B) {
+// Maps each vertex x_B to map(x_B).
+template <typename Map>
+TriangleMesh mapped(TriangleMesh mesh, const Map& map) {
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-    const Vec3 vertex_B = rotation * mesh.vertex(static_cast<std::int32_t>(v)) + translation_B;
-    mesh.x[v] = vertex_B.x();
-    mesh.y[v] = vertex_B.y();
-    mesh.z[v] = vertex_B.z();
+    const Vec3 image_B = map(mesh.vertex(static_cast<std::int32_t>(v)));
+    mesh.x[v] = image_B.x();
+    mesh.y[v] = image_B.y();
+    mesh.z[v] = image_B.z();
   }
   return mesh;
+}
+
+// Maps each vertex x_B to rotation x_B + translation_B.
+inline TriangleMesh moved_mesh(TriangleMesh mesh, const Mat3& rotation, const Vec3& translation_B) {
+  return mapped(std::move(mesh), [&](const Vec3& x_B) { return Vec3(rotation * x_B + translation_B); });
+}
+inline TriangleMesh turned(TriangleMesh mesh, const Eigen::Quaterniond& q,
+                           const Vec3& translation_B = Vec3::Zero()) {
+  return mapped(std::move(mesh), [&](const Vec3& x_B) { return Vec3(q * x_B + translation_B); });
+}
+
+// [m^3], of the cones from the origin to the faces.
+inline double volume_of(const TriangleMesh& mesh) {
+  double six_volumes = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    six_volumes += mesh.vertex(a).dot(mesh.vertex(b).cross(mesh.vertex(c)));
+  }
+  return six_volumes / 6.0;
 }
 
 }  // namespace buoyancy

@@ -14,6 +14,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "geometry/self_intersection.h"
+#include "tests/geometry/sample_meshes.h"
 #include "tests/support/contains.h"
 
 namespace buoyancy {
@@ -26,14 +27,6 @@ TriangleMesh made(const Shape& shape) {
   const Expected<Shape> checked = check_shape(shape);
   EXPECT_TRUE(checked.has_value()) << (checked ? "" : checked.error().message());
   return make_shape(shape);
-}
-
-double volume_of(const TriangleMesh& mesh) {
-  double six_volumes = 0.0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    six_volumes += mesh.vertex(a).dot(mesh.vertex(b).cross(mesh.vertex(c)));
-  }
-  return six_volumes / 6.0;
 }
 
 // Returns an empty text if each edge is used once in each direction, all vertices are used and distinct, no

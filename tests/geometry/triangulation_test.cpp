@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/exact_predicates.h"
+#include "tests/geometry/sample_meshes.h"
 
 namespace buoyancy {
 namespace {
@@ -51,15 +52,6 @@ Vec3 area_vector(const TriangleMesh& mesh, const Triangle& face) {
 Vec3 area_vector(const TriangleMesh& mesh) {
   Vec3 sum = Vec3::Zero();
   for (const Triangle& face : mesh.triangles) sum += area_vector(mesh, face);
-  return sum;
-}
-
-// Of the cones from the origin to the faces [m^3].
-double volume(const TriangleMesh& mesh) {
-  double sum = 0.0;
-  for (const Triangle& t : mesh.triangles) {
-    sum += mesh.vertex(t[0]).dot(mesh.vertex(t[1]).cross(mesh.vertex(t[2]))) / 6.0;
-  }
   return sum;
 }
 
@@ -213,7 +205,7 @@ TEST(Triangulation, SplitsSimplePlanarPolygonsWithoutFolds) {
     ASSERT_EQ(result.mesh.triangles.size(), places.size() - 2);
     EXPECT_GT(least_share_along(result.mesh, expected), 0.0) << i;
     EXPECT_LT((area_vector(result.mesh) - expected).norm(), 1e-9);
-    EXPECT_NEAR(volume(result.mesh), places[0].dot(expected) / 3.0, 1e-9);
+    EXPECT_NEAR(volume_of(result.mesh), places[0].dot(expected) / 3.0, 1e-9);
     expect_rim_of_polygon(result.mesh, places.size());
   }
   EXPECT_GT(tried, 1000);
@@ -228,7 +220,7 @@ TEST(Triangulation, KeepsAreaVectorOfPolygonsThatCrossThemselves) {
     const Result result = split_polygon(places);
     EXPECT_EQ(result.split.non_planar, 0);
     EXPECT_LT((area_vector(result.mesh) - area_vector(places)).norm(), 1e-12);
-    EXPECT_NEAR(volume(result.mesh), 2.0 * area_vector(places).z() / 3.0, 1e-12);
+    EXPECT_NEAR(volume_of(result.mesh), 2.0 * area_vector(places).z() / 3.0, 1e-12);
   }
 }
 
@@ -261,11 +253,11 @@ TEST(Triangulation, GivesNonPlanarPolygonsAVertexAtTheirMean) {
     TriangleMesh mesh;
     for (const Vec3& place : quad) mesh.add_vertex(place);
     mesh.triangles = std::move(triangles);
-    return volume(mesh);
+    return volume_of(mesh);
   };
   const double one = with({{0, 1, 2}, {0, 2, 3}});
   const double other = with({{0, 1, 3}, {1, 2, 3}});
-  EXPECT_NEAR(volume(result.mesh), 0.5 * (one + other), 1e-15);
+  EXPECT_NEAR(volume_of(result.mesh), 0.5 * (one + other), 1e-15);
   EXPECT_NEAR(result.split.split_volume, std::abs(one - other), 1e-15);
   // The plane amid the corners is parallel to both diagonals.
   const Vec3 normal = (quad[2] - quad[0]).cross(quad[3] - quad[1]).normalized();
@@ -302,8 +294,8 @@ TEST(Triangulation, FindsExtremeSplitsOfPentagons) {
       for (std::int32_t k = 1; k < 4; ++k) {
         mesh.triangles.push_back({apex, (apex + k) % 5, (apex + k + 1) % 5});
       }
-      least = std::min(least, volume(mesh));
-      most = std::max(most, volume(mesh));
+      least = std::min(least, volume_of(mesh));
+      most = std::max(most, volume_of(mesh));
     }
     EXPECT_NEAR(split_polygon(places).split.split_volume, most - least, 1e-14);
   }

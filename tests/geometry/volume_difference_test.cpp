@@ -6,27 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "geometry/mass_properties.h"
 #include "tests/geometry/sample_meshes.h"
 #include "tests/hydrostatics/random_poses.h"
 
 namespace buoyancy {
 namespace {
-
-template <typename Map>
-TriangleMesh mapped(TriangleMesh mesh, const Map& map) {
-  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
-    const Vec3 image = map(mesh.vertex(static_cast<std::int32_t>(i)));
-    mesh.x[i] = image.x();
-    mesh.y[i] = image.y();
-    mesh.z[i] = image.z();
-  }
-  return mesh;
-}
-
-double volume_of(const TriangleMesh& mesh) {
-  return mass_properties(mesh).volume;
-}
 
 struct Pair {
   TriangleMesh a, b;

@@ -199,17 +199,14 @@ class BitHash {
 // A box, bulged and twisted by sums, products and a quotient only, so that its bits do not depend on the
 // mathematical library.
 TriangleMesh bulged_box() {
-  TriangleMesh mesh = make_shape(BoxShape{.size = {2, 2, 2}, .segments = {14, 14, 14}});
-  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
-    const double x = mesh.x[i];
-    const double y = mesh.y[i];
-    const double z = mesh.z[i];
+  return mapped(make_shape(BoxShape{.size = {2, 2, 2}, .segments = {14, 14, 14}}), [](const Vec3& v) {
+    const double x = v.x();
+    const double y = v.y();
+    const double z = v.z();
     const double stretch = 1.0 + 0.25 * (x * y - z * z) / (1.0 + x * x + y * y);
-    mesh.x[i] = x * stretch + 0.2 * y * z;
-    mesh.y[i] = y * stretch - 0.1 * x * z;
-    mesh.z[i] = z * stretch;
-  }
-  return mesh;
+    // Not by vectors, whose products and sums Eigen joins.
+    return Vec3(x * stretch + 0.2 * y * z, y * stretch - 0.1 * x * z, z * stretch);
+  });
 }
 
 TEST(Hierarchical, IsBitIdenticalAcrossCompilersAndBuildTypes) {

@@ -21,10 +21,6 @@ constexpr double kRelative = 1e-13;
 const Water kWater{.level = 0.0, .density = 1000.0, .gravity = 10.0};
 constexpr double kWeight = 1e4;  // [N/m^3], of kWater
 
-HydrostaticMesh mesh_of(const Shape& shape) {
-  return make_hydrostatic_mesh({make_shape(shape), {}});
-}
-
 Pose at_height(double height) {
   return {Vec3(3.0, -2.0, height), Eigen::Quaterniond::Identity()};
 }

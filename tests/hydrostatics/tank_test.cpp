@@ -14,10 +14,6 @@
 namespace buoyancy {
 namespace {
 
-HydrostaticMesh mesh_of(const Shape& shape) {
-  return make_hydrostatic_mesh({make_shape(shape), {}});
-}
-
 Tank filled(const HydrostaticMesh& mesh, double fill, double density = 850.0) {
   return {.mesh = &mesh, .liquid_volume = fill * mesh.volume, .density = density};
 }

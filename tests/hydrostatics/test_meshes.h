@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hydrostatics/hydrostatic_mesh.h"
 #include "tests/geometry/sample_meshes.h"
 
 namespace buoyancy {
@@ -20,5 +21,9 @@ TriangleMesh moved_and_scaled(TriangleMesh mesh, const Vec3& by, double scale = 
 TriangleMesh rounded_to_float32(TriangleMesh mesh);
 
 std::vector<NamedMesh> closed_test_meshes();
+
+inline HydrostaticMesh mesh_of(const Shape& shape) {
+  return make_hydrostatic_mesh({make_shape(shape), {}});
+}
 
 }  // namespace buoyancy

@@ -115,16 +115,11 @@ void split_face(TriangleMesh& mesh, RandomPoses& random) {
 
 void stretch(TriangleMesh& mesh, const Vec3& factors, const Eigen::Quaterniond& turn, double scale,
              const Vec3& offset, bool single_precision) {
-  const auto stored = [&](double value) {
-    return single_precision ? static_cast<double>(static_cast<float>(value)) : value;
-  };
-  for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
-    const Vec3 stretched = factors.cwiseProduct(mesh.vertex(static_cast<std::int32_t>(i)));
-    const Vec3 moved = scale * (turn * stretched) + offset;
-    mesh.x[i] = stored(moved.x());
-    mesh.y[i] = stored(moved.y());
-    mesh.z[i] = stored(moved.z());
-  }
+  mesh = mapped(std::move(mesh), [&](const Vec3& vertex) {
+    const Vec3 stretched = factors.cwiseProduct(vertex);
+    return Vec3(scale * (turn * stretched) + offset);
+  });
+  if (single_precision) mesh = rounded_to_float32(std::move(mesh));
 }
 
 RandomMesh drawn(RandomPoses& random) {

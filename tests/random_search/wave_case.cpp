@@ -11,6 +11,7 @@
 
 #include "base/format.h"
 #include "geometry/shapes.h"
+#include "tests/geometry/sample_meshes.h"
 #include "waves/sea_snapshot.h"
 #include "waves/wave_spectrum.h"
 
@@ -345,13 +346,9 @@ WaveSearchBody random_wave_mesh(RandomPoses& random) {
   const Eigen::Quaterniond turn = random.pick(2) == 0 ? Eigen::Quaterniond::Identity() : random.rotation();
   Vec3 offset = Vec3::Zero();
   if (random.pick(2) == 0) offset = scale * random_offset(random, 0.1, 1e3);
-  for (std::size_t i = 0; i < source.vertex_count(); ++i) {
-    const Vec3 vertex = source.vertex(static_cast<std::int32_t>(i));
-    const Vec3 moved = scale * (turn * factors.cwiseProduct(vertex)) + offset;
-    source.x[i] = moved.x();
-    source.y[i] = moved.y();
-    source.z[i] = moved.z();
-  }
+  source = mapped(std::move(source), [&](const Vec3& vertex) {
+    return Vec3(scale * (turn * factors.cwiseProduct(vertex)) + offset);
+  });
   WaveSearchBody body;
   body.mesh = make_hydrostatic_mesh(ValidatedMesh{source, {}}, WithTree::kNo);
   body.tree = build_patch_tree(body.mesh.surface);

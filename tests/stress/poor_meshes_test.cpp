@@ -209,13 +209,6 @@ std::string binary_stl(const TriangleMesh& mesh) {
   return bytes;
 }
 
-TriangleMesh in_single_precision(TriangleMesh mesh) {
-  for (std::vector<double>* axis : {&mesh.x, &mesh.y, &mesh.z}) {
-    for (double& coordinate : *axis) coordinate = static_cast<double>(static_cast<float>(coordinate));
-  }
-  return mesh;
-}
-
 TEST(StressPoorMeshes, MatchesWeldedMeshForUnweldedStl) {
   StressCase stress("unwelded STL against the same mesh welded", "rational arithmetic; the welded mesh",
                     "G_V, G_V L_r");
@@ -230,7 +223,7 @@ TEST(StressPoorMeshes, MatchesWeldedMeshForUnweldedStl) {
     ASSERT_TRUE(validation.mesh);
     stress.require(validation.report.vertices_welded == static_cast<std::int64_t>(named.mesh.vertex_count()),
                    "welded again");
-    const StressedBody original(named.name, in_single_precision(named.mesh));
+    const StressedBody original(named.name, rounded_to_float32(named.mesh));
     const StressedBody unwelded(named.name + ", unwelded", imported->mesh);
     const StressedBody welded(named.name + ", welded", validation.mesh->mesh);
     RandomPoses random(405);

@@ -15,16 +15,6 @@ StressedBody::StressedBody(std::string body_name, TriangleMesh from)
       mesh(make_hydrostatic_mesh({source, {}})),
       box(bounding_box(source)) {}
 
-TriangleMesh turned(TriangleMesh mesh, const Eigen::Quaterniond& q) {
-  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
-    const Vec3 vertex_B = q * mesh.vertex(static_cast<std::int32_t>(v));
-    mesh.x[v] = vertex_B.x();
-    mesh.y[v] = vertex_B.y();
-    mesh.z[v] = vertex_B.z();
-  }
-  return mesh;
-}
-
 const std::vector<StressedBody>& stressed_bodies() {
   static const std::vector<StressedBody> bodies = [] {
     const TriangleMesh rock =

@@ -13,9 +13,6 @@ namespace buoyancy {
 // Density times gravity is 1: forces are in [m^3], torques in [m^4].
 inline const Water kStressWater{.up_W = Vec3::UnitZ(), .level = 0.25, .density = 1.0, .gravity = 1.0};
 
-// Maps x_B to q x_B, so that coordinates use all of their bits.
-TriangleMesh turned(TriangleMesh mesh, const Eigen::Quaterniond& q);
-
 struct StressedBody {
   std::string name;
   TriangleMesh source;

@@ -12,18 +12,13 @@
 #include <gtest/gtest.h>
 
 #include "geometry/shapes.h"
+#include "tests/geometry/sample_meshes.h"
 
 namespace buoyancy {
 namespace {
 
 Vec3 area_vector(const TriangleMesh& mesh, const Triangle& t) {
   return 0.5 * (mesh.vertex(t[1]) - mesh.vertex(t[0])).cross(mesh.vertex(t[2]) - mesh.vertex(t[0]));
-}
-
-double volume_of(const TriangleMesh& mesh) {
-  double volume = 0.0;
-  for (const Triangle& t : mesh.triangles) volume += area_vector(mesh, t).dot(mesh.vertex(t[0])) / 3.0;
-  return volume;
 }
 
 double area_of(const TriangleMesh& mesh) {

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/shapes.h"
+#include "tests/hydrostatics/test_meshes.h"
 #include "tests/wave_loads/body_in_sea.h"
 #include "waves/sea.h"
 
@@ -47,10 +48,6 @@ struct InSea {
   SeaAtTime sea;
   Solver solver;
 };
-
-HydrostaticMesh mesh_of(const Shape& shape) {
-  return make_hydrostatic_mesh(ValidatedMesh{make_shape(shape), {}});
-}
 
 // A sphere in a regular wave.
 struct Floating : InSea {

@@ -12,6 +12,7 @@
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/wetted_tree_sum.h"
 #include "tests/hydrostatics/forced_target.h"
+#include "tests/hydrostatics/test_meshes.h"
 #include "tests/support/allocation_count.h"
 #include "tests/wave_loads/body_in_sea.h"
 
@@ -19,10 +20,6 @@ namespace buoyancy {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-HydrostaticMesh mesh_of(const Shape& shape) {
-  return make_hydrostatic_mesh(ValidatedMesh{make_shape(shape), {}});
-}
 
 HydrostaticMesh rock(double radius, std::int32_t frequency) {
   return mesh_of(RockShape{radius, frequency, 0.4, 3});
