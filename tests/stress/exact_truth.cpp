@@ -19,6 +19,14 @@ void check_result(StressCase& stress, const StressedBody& body, const BuoyancyRe
   stress.check(truth.torque_error(result.torque_W, torque_gate), torque_gate, "torque, " + where);
 }
 
+void check_result(StressCase& stress, const StressedBody& body, const BuoyancyResult& result,
+                  const BuoyancyResult& other, const Vec3& reference_B, double factor,
+                  const std::string& where) {
+  stress.check(std::abs(result.volume - other.volume), factor * body.volume_tolerance(), "volume, " + where);
+  stress.check((result.torque_W - other.torque_W).norm(), factor * body.torque_tolerance(reference_B),
+               "torque, " + where);
+}
+
 void check_exactly(StressCase& stress, const StressedBody& body, const Pose& pose, const Water& water,
                    const Vec3& reference_B, const std::string& where, double factor) {
   const Truth truth({&body.source}, pose, water, reference_B);

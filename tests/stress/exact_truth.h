@@ -17,6 +17,11 @@ inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 void check_result(StressCase& stress, const StressedBody& body, const BuoyancyResult& result,
                   const Truth& truth, const Vec3& reference_B, double factor, const std::string& where);
 
+// Checks its volume and torque against those of another result that is as exact.
+void check_result(StressCase& stress, const StressedBody& body, const BuoyancyResult& result,
+                  const BuoyancyResult& other, const Vec3& reference_B, double factor,
+                  const std::string& where);
+
 // Checks every exact method at one pose against the truth. factor: further factor on the tolerances.
 void check_exactly(StressCase& stress, const StressedBody& body, const Pose& pose, const Water& water,
                    const Vec3& reference_B, const std::string& where = "", double factor = 1.0);

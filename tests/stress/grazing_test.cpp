@@ -82,15 +82,12 @@ TEST(StressGrazing, TreatsFeaturesOnPlaneAsDry) {
 
   // Any rotation about a vertex at B's origin, and about an edge along x through it; the origin lies in the
   // water plane.
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(301);
-    for (int i = 0; i < tries(6); ++i) {
-      const auto vertex = static_cast<std::int32_t>(random.pick(body.source.vertex_count()));
-      const StressedBody moved(body.name, moved_and_scaled(body.source, -body.source.vertex(vertex)));
-      check_exactly(stress, moved, {Vec3(0, 0, kStressWater.level), random.rotation()}, kStressWater,
-                    reference_near(random, moved), ", a vertex");
-    }
-  }
+  for_each_turn(301, tries(6), [&](RandomPoses& random, const StressedBody& body, int) {
+    const auto vertex = static_cast<std::int32_t>(random.pick(body.source.vertex_count()));
+    const StressedBody moved(body.name, moved_and_scaled(body.source, -body.source.vertex(vertex)));
+    check_exactly(stress, moved, {Vec3(0, 0, kStressWater.level), random.rotation()}, kStressWater,
+                  reference_near(random, moved), ", a vertex");
+  });
   const StressedBody bar("box with an edge in x",
                          moved_and_scaled(make_shape(BoxShape{.segments = {3, 2, 2}}), {0, 0.5, 0.5}));
   const StressedBody slab("box with a face in z",
@@ -240,54 +237,46 @@ TEST(StressGrazing, IsExactWhenNearlySubmerged) {
 TEST(StressGrazing, IsConstantAtEveryDepthWhenSubmerged) {
   StressCase stress("submerged, depth to 1e4 m", "the constants",
                     "same bits; exact and exact_surface: G_V (1 + 8 depth/L)");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(306);
-    for (int i = 0; i < tries(4); ++i) {
-      Pose pose{Vec3::Zero(), random.rotation()};
-      const Vec3 reference_B = reference_near(random, body);
-      const Vec3 center_W = pose.q_WB * body.box.center();
-      std::vector<BuoyancyResult> shallow;
-      for (const double depth : {0.6 * body.mesh.diagonal, 3.0 * body.mesh.diagonal, 1e2 * body.mesh.diagonal,
-                                 0.6 * body.mesh.diagonal + 1e4}) {
-        pose.p_WB = Vec3(0, 0, -depth) - center_W;
-        const Truth truth({&body.source}, pose, kLevelZero, reference_B);
-        std::size_t next = 0;
-        visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-          const BuoyancyResult result = buoyancy(solver, pose, kLevelZero, reference_B);
-          const std::string where = body.name + ", " + method;
-          check_result(stress, body, result, truth, reference_B, depth_factor(solver, pose, kLevelZero),
-                       where);
-          stress.require(result.immersion == Immersion::kSubmerged, where);
-          if (next == shallow.size()) shallow.push_back(result);
-          if (solver.method() == Method::kHierarchical) {
-            stress.require(same_bits(result, shallow[next]), "bits, " + where);
-            stress.check(std::abs(result.volume - body.mesh.volume), 0.0, "V_T, " + where);
-          }
-          ++next;
-        });
-      }
+  for_each_turn(306, tries(4), [&](RandomPoses& random, const StressedBody& body, int) {
+    Pose pose{Vec3::Zero(), random.rotation()};
+    const Vec3 reference_B = reference_near(random, body);
+    const Vec3 center_W = pose.q_WB * body.box.center();
+    std::vector<BuoyancyResult> shallow;
+    for (const double depth : {0.6 * body.mesh.diagonal, 3.0 * body.mesh.diagonal, 1e2 * body.mesh.diagonal,
+                               0.6 * body.mesh.diagonal + 1e4}) {
+      pose.p_WB = Vec3(0, 0, -depth) - center_W;
+      const Truth truth({&body.source}, pose, kLevelZero, reference_B);
+      std::size_t next = 0;
+      visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
+        const BuoyancyResult result = buoyancy(solver, pose, kLevelZero, reference_B);
+        const std::string where = body.name + ", " + method;
+        check_result(stress, body, result, truth, reference_B, depth_factor(solver, pose, kLevelZero), where);
+        stress.require(result.immersion == Immersion::kSubmerged, where);
+        if (next == shallow.size()) shallow.push_back(result);
+        if (solver.method() == Method::kHierarchical) {
+          stress.require(same_bits(result, shallow[next]), "bits, " + where);
+          stress.check(std::abs(result.volume - body.mesh.volume), 0.0, "V_T, " + where);
+        }
+        ++next;
+      });
     }
-  }
+  });
 }
 
 TEST(StressGrazing, IsZeroWhenDry) {
   StressCase stress("dry", "zero, all six methods", "same bits");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(307);
-    for (int i = 0; i < tries(40); ++i) {
-      Pose pose{Vec3::Zero(), random.rotation()};
-      const double clearance = body.mesh.diagonal * std::pow(10.0, random.uniform(-9, 5));
-      pose.p_WB.z() = clearance - lowest_point(body.source, pose.q_WB);
-      for (const Method method : kAllMethods) {
-        const BuoyancyResult result =
-            buoyancy(Solver(body.mesh, method), pose, kLevelZero, body.mesh.center_B);
-        stress.require(result.status == BuoyancyStatus::kOk && result.volume == 0.0 &&
-                           result.force_W.isZero(0.0) && result.torque_W.isZero(0.0) &&
-                           result.center_of_buoyancy_W.isZero(0.0),
-                       body.name + ", " + std::string(to_string(method)));
-      }
+  for_each_turn(307, tries(40), [&](RandomPoses& random, const StressedBody& body, int) {
+    Pose pose{Vec3::Zero(), random.rotation()};
+    const double clearance = body.mesh.diagonal * std::pow(10.0, random.uniform(-9, 5));
+    pose.p_WB.z() = clearance - lowest_point(body.source, pose.q_WB);
+    for (const Method method : kAllMethods) {
+      const BuoyancyResult result = buoyancy(Solver(body.mesh, method), pose, kLevelZero, body.mesh.center_B);
+      stress.require(result.status == BuoyancyStatus::kOk && result.volume == 0.0 &&
+                         result.force_W.isZero(0.0) && result.torque_W.isZero(0.0) &&
+                         result.center_of_buoyancy_W.isZero(0.0),
+                     body.name + ", " + std::string(to_string(method)));
     }
-  }
+  });
 }
 
 }  // namespace

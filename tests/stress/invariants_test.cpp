@@ -10,6 +10,7 @@
 
 #include "hydrostatics/hydrostatics.h"
 #include "hydrostatics/wetted_moments.h"
+#include "tests/stress/exact_truth.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"
 #include "tests/truth/stiffness_autodiff.h"
@@ -27,21 +28,18 @@ Water from_above(Water water) {
 
 TEST(StressInvariants, WetAndDryVolumesSumToTotal) {
   StressCase stress("V_wet + V_dry = V_T", "V_T", "G_V");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(101);
-    for (int i = 0; i < tries(1000); ++i) {
-      Water water = kStressWater;
-      const Pose pose = stressed_pose(random, body, i, water);
-      visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-        const double wet = buoyancy(solver, pose, water, body.mesh.center_B).volume;
-        const double dry = buoyancy(solver, pose, from_above(water), body.mesh.center_B).volume;
-        const double factor =
-            std::max(depth_factor(solver, pose, water), depth_factor(solver, pose, from_above(water)));
-        stress.check(std::abs((wet - body.mesh.volume) + dry), factor * body.volume_tolerance(),
-                     body.name + ", " + method);
-      });
-    }
-  }
+  for_each_turn(101, tries(1000), [&](RandomPoses& random, const StressedBody& body, int i) {
+    Water water = kStressWater;
+    const Pose pose = stressed_pose(random, body, i, water);
+    visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
+      const double wet = buoyancy(solver, pose, water, body.mesh.center_B).volume;
+      const double dry = buoyancy(solver, pose, from_above(water), body.mesh.center_B).volume;
+      const double factor =
+          std::max(depth_factor(solver, pose, water), depth_factor(solver, pose, from_above(water)));
+      stress.check(std::abs((wet - body.mesh.volume) + dry), factor * body.volume_tolerance(),
+                   body.name + ", " + method);
+    });
+  });
 }
 
 // F/(rho g) in B and tau_c/(rho g) along k, as computed from the surface moments without projection.
@@ -74,23 +72,20 @@ TEST(StressInvariants, HorizontalForceVanishesBeforeProjection) {
   // The pressures on the two sides of a thin plate cancel; each is as large as A_s times the depth: 1.3 G_V
   // are measured with the plate half submerged. The published force has no such component.
   StressCase stress("horizontal force = 0 before projection", "0", "G_V; exact_surface: 2 G_V");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(102);
-    for (int i = 0; i < tries(1000); ++i) {
-      Water water = kStressWater;
-      const Pose pose = stressed_pose(random, body, i, water);
-      const WaterPlane plane = water_plane_in_body(pose, water, body.mesh.center_B);
-      visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-        const Displacement found = solver.displacement(plane);
-        const double factor =
-            depth_factor(solver, pose, water) * (solver.method() == Method::kExactSurface ? 2.0 : 1.0);
-        stress.check(horizontal(found.force, plane.up_B), factor * body.volume_tolerance(),
-                     body.name + ", " + method);
-      });
-      stress.check(horizontal(from_moments(*body.mesh.tree, plane).force, plane.up_B),
-                   body.volume_tolerance(), body.name + ", all moments");
-    }
-  }
+  for_each_turn(102, tries(1000), [&](RandomPoses& random, const StressedBody& body, int i) {
+    Water water = kStressWater;
+    const Pose pose = stressed_pose(random, body, i, water);
+    const WaterPlane plane = water_plane_in_body(pose, water, body.mesh.center_B);
+    visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
+      const Displacement found = solver.displacement(plane);
+      const double factor =
+          depth_factor(solver, pose, water) * (solver.method() == Method::kExactSurface ? 2.0 : 1.0);
+      stress.check(horizontal(found.force, plane.up_B), factor * body.volume_tolerance(),
+                   body.name + ", " + method);
+    });
+    stress.check(horizontal(from_moments(*body.mesh.tree, plane).force, plane.up_B), body.volume_tolerance(),
+                 body.name + ", all moments");
+  });
 }
 
 TEST(StressInvariants, TorqueAboutUpVanishesBeforeProjection) {
@@ -114,39 +109,35 @@ TEST(StressInvariants, TorqueAboutUpVanishesBeforeProjection) {
 
 TEST(StressInvariants, VolumeNeverFallsAsLevelRises) {
   StressCase stress("V never falls as the level rises", "the level before", "G_V");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(104);
-    for (int i = 0; i < tries(60); ++i) {
-      Water water = kStressWater;
-      const Pose pose = stressed_pose(random, body, i, water);
-      std::vector<double> levels;
-      // From dry to submerged.
-      const double middle = water.up_W.dot(pose.p_WB + pose.q_WB * body.box.center());
-      for (int step = -20; step <= 20; ++step) {
-        levels.push_back(middle + 0.026 * step * body.mesh.diagonal);
-      }
-      // A few ulp around the heights of vertices, where the volume may jump.
-      for (int v = 0; v < 8; ++v) {
-        const auto vertex = static_cast<std::int32_t>(random.pick(body.source.vertex_count()));
-        double level = water.up_W.dot(pose.p_WB + pose.q_WB * body.source.vertex(vertex));
-        for (int ulp = 0; ulp < 3; ++ulp) level = std::nextafter(level, -INFINITY);
-        for (int ulp = 0; ulp < 6; ++ulp) levels.push_back(level = std::nextafter(level, INFINITY));
-      }
-      std::sort(levels.begin(), levels.end());
-      visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-        double highest = 0.0;
-        for (const double level : levels) {
-          Water raised = water;
-          raised.level = level;
-          const double volume = buoyancy(solver, pose, raised, body.mesh.center_B).volume;
-          stress.check(std::max(0.0, highest - volume),
-                       depth_factor(solver, pose, raised) * body.volume_tolerance(),
-                       body.name + ", " + method);
-          highest = std::max(highest, volume);
-        }
-      });
+  for_each_turn(104, tries(60), [&](RandomPoses& random, const StressedBody& body, int i) {
+    Water water = kStressWater;
+    const Pose pose = stressed_pose(random, body, i, water);
+    std::vector<double> levels;
+    // From dry to submerged.
+    const double middle = water.up_W.dot(pose.p_WB + pose.q_WB * body.box.center());
+    for (int step = -20; step <= 20; ++step) {
+      levels.push_back(middle + 0.026 * step * body.mesh.diagonal);
     }
-  }
+    // A few ulp around the heights of vertices, where the volume may jump.
+    for (int v = 0; v < 8; ++v) {
+      const auto vertex = static_cast<std::int32_t>(random.pick(body.source.vertex_count()));
+      double level = water.up_W.dot(pose.p_WB + pose.q_WB * body.source.vertex(vertex));
+      for (int ulp = 0; ulp < 3; ++ulp) level = std::nextafter(level, -INFINITY);
+      for (int ulp = 0; ulp < 6; ++ulp) levels.push_back(level = std::nextafter(level, INFINITY));
+    }
+    std::sort(levels.begin(), levels.end());
+    visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
+      double highest = 0.0;
+      for (const double level : levels) {
+        Water raised = water;
+        raised.level = level;
+        const double volume = buoyancy(solver, pose, raised, body.mesh.center_B).volume;
+        stress.check(std::max(0.0, highest - volume),
+                     depth_factor(solver, pose, raised) * body.volume_tolerance(), body.name + ", " + method);
+        highest = std::max(highest, volume);
+      }
+    });
+  });
 }
 
 TEST(StressInvariants, VolumeChangeIsIntegralOfWaterplane) {
@@ -189,6 +180,16 @@ TEST(StressInvariants, VolumeChangeIsIntegralOfWaterplane) {
   }
 }
 
+// Checks the body's results against others, in the order of results_of().
+void check_results(StressCase& stress, const StressedBody& body, const Pose& pose, const Water& water,
+                   const Vec3& reference_B, const std::vector<BuoyancyResult>& others) {
+  std::size_t next = 0;
+  visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
+    check_result(stress, body, buoyancy(solver, pose, water, reference_B), others.at(next++), reference_B,
+                 depth_factor(solver, pose, water), body.name + ", " + method);
+  });
+}
+
 TEST(StressInvariants, ResultIsIndependentOfFaceOrder) {
   StressCase stress("face order permuted", "the order before", "G_V, G_V L_r");
   for (const StressedBody& body : stressed_bodies()) {
@@ -202,45 +203,29 @@ TEST(StressInvariants, ResultIsIndependentOfFaceOrder) {
       Water water = kStressWater;
       const Pose pose = stressed_pose(random, body, i, water);
       const Vec3 reference_B = reference_near(random, body);
-      std::vector<BuoyancyResult> before;
-      visit_exact_solvers(body.mesh, [&](const std::string&, const Solver& solver) {
-        before.push_back(buoyancy(solver, pose, water, reference_B));
-      });
-      std::size_t next = 0;
-      visit_exact_solvers(permuted.mesh, [&](const std::string& method, const Solver& solver) {
-        const BuoyancyResult& one = before[next++];
-        const BuoyancyResult other = buoyancy(solver, pose, water, reference_B);
-        const double factor = depth_factor(solver, pose, water);
-        const std::string where = body.name + ", " + method;
-        stress.check(std::abs(other.volume - one.volume), factor * body.volume_tolerance(),
-                     "volume, " + where);
-        stress.check((other.torque_W - one.torque_W).norm(), factor * body.torque_tolerance(reference_B),
-                     "torque, " + where);
-      });
+      check_results(stress, permuted, pose, water, reference_B,
+                    results_of(body.mesh, pose, water, reference_B));
     }
   }
 }
 
 TEST(StressInvariants, TorqueShiftsWithReferencePoint) {
   StressCase stress("reference point moved: t' = t + (r - r') x F", "the other point", "G_V L_r");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(107);
-    for (int i = 0; i < tries(1000); ++i) {
-      Water water = kStressWater;
-      const Pose pose = stressed_pose(random, body, i, water);
-      const Vec3 r = reference_near(random, body);
-      const Vec3 s = reference_near(random, body);
-      visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-        const BuoyancyResult about_r = buoyancy(solver, pose, water, r);
-        const BuoyancyResult about_s = buoyancy(solver, pose, water, s);
-        const Vec3 lever_W = pose.q_WB.normalized() * (r - s);
-        stress.check(
-            (about_s.torque_W - about_r.torque_W - lever_W.cross(about_r.force_W)).norm(),
-            depth_factor(solver, pose, water) * std::max(body.torque_tolerance(r), body.torque_tolerance(s)),
-            body.name + ", " + method);
-      });
-    }
-  }
+  for_each_turn(107, tries(1000), [&](RandomPoses& random, const StressedBody& body, int i) {
+    Water water = kStressWater;
+    const Pose pose = stressed_pose(random, body, i, water);
+    const Vec3 r = reference_near(random, body);
+    const Vec3 s = reference_near(random, body);
+    visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
+      const BuoyancyResult about_r = buoyancy(solver, pose, water, r);
+      const BuoyancyResult about_s = buoyancy(solver, pose, water, s);
+      const Vec3 lever_W = pose.q_WB.normalized() * (r - s);
+      stress.check(
+          (about_s.torque_W - about_r.torque_W - lever_W.cross(about_r.force_W)).norm(),
+          depth_factor(solver, pose, water) * std::max(body.torque_tolerance(r), body.torque_tolerance(s)),
+          body.name + ", " + method);
+    });
+  });
 }
 
 // The faces on one side of a plane through the middle, and the rest. Every edge between the two gets a
@@ -286,27 +271,13 @@ TEST(StressInvariants, ClosedPartsSumToWhole) {
         Water water = kStressWater;
         const Pose pose = stressed_pose(random, body, i, water);
         const Vec3 reference_B = reference_near(random, body);
-        std::vector<BuoyancyResult> sums;
-        visit_exact_solvers(first.mesh, [&](const std::string&, const Solver& solver) {
-          sums.push_back(buoyancy(solver, pose, water, reference_B));
-        });
-        std::size_t next = 0;
-        visit_exact_solvers(second.mesh, [&](const std::string&, const Solver& solver) {
-          const BuoyancyResult part = buoyancy(solver, pose, water, reference_B);
-          sums[next].volume += part.volume;
-          sums[next++].torque_W += part.torque_W;
-        });
-        next = 0;
-        visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-          const BuoyancyResult whole = buoyancy(solver, pose, water, reference_B);
-          const BuoyancyResult& sum = sums[next++];
-          const double factor = depth_factor(solver, pose, water);
-          const std::string where = body.name + ", " + method;
-          stress.check(std::abs(sum.volume - whole.volume), factor * body.volume_tolerance(),
-                       "volume, " + where);
-          stress.check((sum.torque_W - whole.torque_W).norm(), factor * body.torque_tolerance(reference_B),
-                       "torque, " + where);
-        });
+        std::vector<BuoyancyResult> sums = results_of(first.mesh, pose, water, reference_B);
+        const std::vector<BuoyancyResult> rest = results_of(second.mesh, pose, water, reference_B);
+        for (std::size_t n = 0; n < sums.size(); ++n) {
+          sums[n].volume += rest[n].volume;
+          sums[n].torque_W += rest[n].torque_W;
+        }
+        check_results(stress, body, pose, water, reference_B, sums);
       }
     }
   }
@@ -315,40 +286,37 @@ TEST(StressInvariants, ClosedPartsSumToWhole) {
 TEST(StressInvariants, TorqueAndStiffnessAreDerivatives) {
   StressCase stress("torque = -dU/dtheta, stiffness = -d(F, torque)/dpose",
                     "dual numbers through the templated kernel", "1e-9 relative");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(109);
-    for (int i = 0; i < tries(60); ++i) {
-      Water water = kStressWater;
-      if (i % 4 == 3) water.up_W = random.direction();
-      const Pose pose = random.crossing(body.box, water);
-      const Vec3 reference_B = reference_near(random, body);
+  for_each_turn(109, tries(60), [&](RandomPoses& random, const StressedBody& body, int i) {
+    Water water = kStressWater;
+    if (i % 4 == 3) water.up_W = random.direction();
+    const Pose pose = random.crossing(body.box, water);
+    const Vec3 reference_B = reference_near(random, body);
 
-      // U = -rho g H with H the integral of the height over the displaced volume, H = k . M - h_c V.
-      const DualPlane plane = dual_water_plane(body.mesh, pose, water, reference_B);
-      const auto displaced = displacement_moments<Dual>(
-          wetted_moments_reference<Dual>(body.mesh.surface, plane.up_B, plane.h_c), -plane.h_c, plane.up_B);
-      const Dual H = plane.up_B.dot(displaced.moment) - plane.h_c * displaced.volume;
-      const Vec3 force_W(H.slope[0], H.slope[1], H.slope[2]);
-      const Vec3 torque_W(H.slope[3], H.slope[4], H.slope[5]);
-      visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-        const BuoyancyResult result = buoyancy(solver, pose, water, reference_B);
-        const std::string where = body.name + ", " + method;
-        stress.check((result.force_W - force_W).norm(), 1e-9 * body.mesh.volume, "force, " + where);
-        stress.check((result.torque_W - torque_W).norm(), 1e-9 * body.mesh.volume * body.mesh.diagonal,
-                     "torque, " + where);
-      });
+    // U = -rho g H with H the integral of the height over the displaced volume, H = k . M - h_c V.
+    const DualPlane plane = dual_water_plane(body.mesh, pose, water, reference_B);
+    const auto displaced = displacement_moments<Dual>(
+        wetted_moments_reference<Dual>(body.mesh.surface, plane.up_B, plane.h_c), -plane.h_c, plane.up_B);
+    const Dual H = plane.up_B.dot(displaced.moment) - plane.h_c * displaced.volume;
+    const Vec3 force_W(H.slope[0], H.slope[1], H.slope[2]);
+    const Vec3 torque_W(H.slope[3], H.slope[4], H.slope[5]);
+    visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
+      const BuoyancyResult result = buoyancy(solver, pose, water, reference_B);
+      const std::string where = body.name + ", " + method;
+      stress.check((result.force_W - force_W).norm(), 1e-9 * body.mesh.volume, "force, " + where);
+      stress.check((result.torque_W - torque_W).norm(), 1e-9 * body.mesh.volume * body.mesh.diagonal,
+                   "torque, " + where);
+    });
 
-      const auto found = hydrostatics(body.mesh, pose, water, reference_B, std::nullopt);
-      stress.require(found.has_value(), body.name);
-      if (!found) continue;
-      // The area of a tiny waterplane is known only to eps A_s.
-      const double area = found->waterplane_area;
-      if (stiffness_tolerance(body.mesh, area) > 1e-9) continue;
-      stress.check(max_difference(found->stiffness, stiffness_autodiff(body.mesh, pose, water, reference_B),
-                                  area > 0.0),
-                   1e-9, "stiffness, " + body.name);
-    }
-  }
+    const auto found = hydrostatics(body.mesh, pose, water, reference_B, std::nullopt);
+    stress.require(found.has_value(), body.name);
+    if (!found) return;
+    // The area of a tiny waterplane is known only to eps A_s.
+    const double area = found->waterplane_area;
+    if (stiffness_tolerance(body.mesh, area) > 1e-9) return;
+    stress.check(
+        max_difference(found->stiffness, stiffness_autodiff(body.mesh, pose, water, reference_B), area > 0.0),
+        1e-9, "stiffness, " + body.name);
+  });
 }
 
 }  // namespace

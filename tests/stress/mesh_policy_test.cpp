@@ -175,17 +175,14 @@ TEST(StressMeshPolicy, SumsCavitiesComponentsAndShells) {
       const Pose pose = stressed_pose(random, body, i, water);
       const Vec3 reference_B = reference_near(random, body);
       visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-        const BuoyancyResult whole = buoyancy(solver, pose, water, reference_B);
         BuoyancyResult sum;
         for (const StressedBody& part : alone) {
           const BuoyancyResult one = buoyancy(Solver(part.mesh, solver.method()), pose, water, reference_B);
           sum.volume += one.volume;
           sum.torque_W += one.torque_W;
         }
-        const std::string where = parts.name + ", " + method;
-        stress.check(std::abs(whole.volume - sum.volume), body.volume_tolerance(), "volume, " + where);
-        stress.check((whole.torque_W - sum.torque_W).norm(), body.torque_tolerance(reference_B),
-                     "torque, " + where);
+        check_result(stress, body, buoyancy(solver, pose, water, reference_B), sum, reference_B, 1.0,
+                     parts.name + ", " + method);
       });
       if (i % 10 < 2) check_exactly(stress, body, pose, water, reference_B);
     }

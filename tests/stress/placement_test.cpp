@@ -43,102 +43,87 @@ void check_moved(StressCase& stress, const StressedBody& body, const Pose& near,
 
 TEST(StressPlacement, IsBitIdenticalFarAwayWhenUpIsAxis) {
   StressCase stress("body 1e6 m, 1e9 m away horizontally, up an axis", "the same body near", "same bits");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(201);
-    for (int i = 0; i < tries(60); ++i) {
-      Water water = kStressWater;
-      const int axis = i % 3;
-      water.up_W = (i % 2 == 0 ? 1.0 : -1.0) * Vec3::Unit(axis);
-      Pose near;
-      near.q_WB = random.rotation();
-      const double height = water.level + 0.55 * body.mesh.diagonal * random.uniform(-1, 1) -
-                            water.up_W.dot(near.q_WB * body.box.center());
-      near.p_WB = height * water.up_W;
-      for (const double distance : {1e6, 1e9}) {
-        Pose far = near;
-        far.p_WB[(axis + 1) % 3] = distance * random.uniform(-1, 1);
-        far.p_WB[(axis + 2) % 3] = distance;
-        visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
-          stress.require(same_bits(buoyancy(solver, near, water, Vec3::Zero()),
-                                   buoyancy(solver, far, water, Vec3::Zero())),
-                         body.name + ", " + method);
-        });
-      }
+  for_each_turn(201, tries(60), [&](RandomPoses& random, const StressedBody& body, int i) {
+    Water water = kStressWater;
+    const int axis = i % 3;
+    water.up_W = (i % 2 == 0 ? 1.0 : -1.0) * Vec3::Unit(axis);
+    Pose near;
+    near.q_WB = random.rotation();
+    const double height = water.level + 0.55 * body.mesh.diagonal * random.uniform(-1, 1) -
+                          water.up_W.dot(near.q_WB * body.box.center());
+    near.p_WB = height * water.up_W;
+    for (const double distance : {1e6, 1e9}) {
+      Pose far = near;
+      far.p_WB[(axis + 1) % 3] = distance * random.uniform(-1, 1);
+      far.p_WB[(axis + 2) % 3] = distance;
+      visit_exact_solvers(body.mesh, [&](const std::string& method, const Solver& solver) {
+        stress.require(same_bits(buoyancy(solver, near, water, Vec3::Zero()),
+                                 buoyancy(solver, far, water, Vec3::Zero())),
+                       body.name + ", " + method);
+      });
     }
-  }
+  });
 }
 
 TEST(StressPlacement, ChangesOnlyByPositionRoundingFarAway) {
   StressCase stress("body 1e6 m, 1e9 m away horizontally, up tilted", "the same body near",
                     "A_wp dh, dh = eps |p| (beside G_V)");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(202);
-    for (int i = 0; i < tries(40); ++i) {
-      Water water = kStressWater;
-      const double tilt = random.uniform(0.1, 1.4);
-      water.up_W = Vec3(std::sin(tilt), 0.0, std::cos(tilt));
-      const Pose near = random.crossing(body.box, water);
-      for (const double distance : {1e6, 1e9}) {
-        Pose far = near;
-        far.p_WB += distance * Vec3(water.up_W.z(), random.uniform(-1, 1), -water.up_W.x());
-        check_moved(stress, body, near, water, far, water, far.p_WB.norm() + near.p_WB.norm());
-      }
+  for_each_turn(202, tries(40), [&](RandomPoses& random, const StressedBody& body, int) {
+    Water water = kStressWater;
+    const double tilt = random.uniform(0.1, 1.4);
+    water.up_W = Vec3(std::sin(tilt), 0.0, std::cos(tilt));
+    const Pose near = random.crossing(body.box, water);
+    for (const double distance : {1e6, 1e9}) {
+      Pose far = near;
+      far.p_WB += distance * Vec3(water.up_W.z(), random.uniform(-1, 1), -water.up_W.x());
+      check_moved(stress, body, near, water, far, water, far.p_WB.norm() + near.p_WB.norm());
     }
-  }
+  });
 }
 
 TEST(StressPlacement, IsExactForDistantPose) {
   StressCase stress("body 1e6 m, 1e9 m away horizontally, up tilted",
                     "rational arithmetic at the pose as requested", "G_V, G_V L_r");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(203);
-    for (int i = 0; i < tries(8); ++i) {
-      Water water = kStressWater;
-      water.up_W = random.direction();
-      Pose pose = random.crossing(body.box, water);
-      const Vec3 sideways = random.direction();
-      pose.p_WB += (i % 2 == 0 ? 1e6 : 1e9) * (sideways - water.up_W.dot(sideways) * water.up_W);
-      // Moves the level to compensate, approximately, for the rounding of p.
-      const Vec3 center_W = pose.p_WB + pose.q_WB * body.box.center();
-      water.level = water.up_W.dot(center_W) + 0.3 * body.mesh.diagonal * random.uniform(-1, 1);
-      check_exactly(stress, body, pose, water, reference_near(random, body));
-    }
-  }
+  for_each_turn(203, tries(8), [&](RandomPoses& random, const StressedBody& body, int i) {
+    Water water = kStressWater;
+    water.up_W = random.direction();
+    Pose pose = random.crossing(body.box, water);
+    const Vec3 sideways = random.direction();
+    pose.p_WB += (i % 2 == 0 ? 1e6 : 1e9) * (sideways - water.up_W.dot(sideways) * water.up_W);
+    // Moves the level to compensate, approximately, for the rounding of p.
+    const Vec3 center_W = pose.p_WB + pose.q_WB * body.box.center();
+    water.level = water.up_W.dot(center_W) + 0.3 * body.mesh.diagonal * random.uniform(-1, 1);
+    check_exactly(stress, body, pose, water, reference_near(random, body));
+  });
 }
 
 TEST(StressPlacement, IsAsExactAsPoseForVerticalOffset) {
   StressCase stress("vertical offset 1e6 m (level and position)", "without the offset",
                     "A_wp dh, dh = eps |p_z| (beside G_V)");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(204);
-    for (int i = 0; i < tries(40); ++i) {
-      const Pose near = random.crossing(body.box, kStressWater);
-      for (const double offset : {1e6, -1e6, 1234567.89}) {
-        Water far_water = kStressWater;
-        far_water.level += offset;
-        Pose far = near;
-        far.p_WB.z() += offset;
-        check_moved(stress, body, near, kStressWater, far, far_water,
-                    std::abs(far.p_WB.z()) + std::abs(far_water.level));
-      }
+  for_each_turn(204, tries(40), [&](RandomPoses& random, const StressedBody& body, int) {
+    const Pose near = random.crossing(body.box, kStressWater);
+    for (const double offset : {1e6, -1e6, 1234567.89}) {
+      Water far_water = kStressWater;
+      far_water.level += offset;
+      Pose far = near;
+      far.p_WB.z() += offset;
+      check_moved(stress, body, near, kStressWater, far, far_water,
+                  std::abs(far.p_WB.z()) + std::abs(far_water.level));
     }
-  }
+  });
 }
 
 TEST(StressPlacement, IsExactForVerticalOffset) {
   StressCase stress("vertical offset 1e6 m (level and position)",
                     "rational arithmetic at the pose as requested", "G_V, G_V L_r");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(205);
-    for (int i = 0; i < tries(8); ++i) {
-      const double offset = random.uniform(-1e6, 1e6);
-      Pose pose = random.crossing(body.box, kStressWater);
-      pose.p_WB.z() += offset;
-      Water water = kStressWater;
-      water.level += offset;
-      check_exactly(stress, body, pose, water, reference_near(random, body));
-    }
-  }
+  for_each_turn(205, tries(8), [&](RandomPoses& random, const StressedBody& body, int) {
+    const double offset = random.uniform(-1e6, 1e6);
+    Pose pose = random.crossing(body.box, kStressWater);
+    pose.p_WB.z() += offset;
+    Water water = kStressWater;
+    water.level += offset;
+    check_exactly(stress, body, pose, water, reference_near(random, body));
+  });
 }
 
 TEST(StressPlacement, IsExactForMeshFarFromItsOrigin) {

@@ -59,13 +59,10 @@ TEST(StressPoorMeshes, IsExactForSliversAndNeedles) {
           const Vec3 reference_B = reference_near(random, poor);
           check_exactly(stress, poor, pose, water, reference_B);
           if (!same_body) continue;
-          std::vector<double> without;
-          visit_exact_solvers(body.mesh, [&](const std::string&, const Solver& solver) {
-            without.push_back(buoyancy(solver, pose, water, reference_B).volume);
-          });
+          const std::vector<BuoyancyResult> without = results_of(body.mesh, pose, water, reference_B);
           std::size_t next = 0;
           visit_exact_solvers(poor.mesh, [&](const std::string& method, const Solver& solver) {
-            stress.check(std::abs(buoyancy(solver, pose, water, reference_B).volume - without[next++]),
+            stress.check(std::abs(buoyancy(solver, pose, water, reference_B).volume - without[next++].volume),
                          body.volume_tolerance(), "inserted, " + method);
           });
         }

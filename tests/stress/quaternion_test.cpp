@@ -29,26 +29,23 @@ Eigen::Quaterniond scaled(const Eigen::Quaterniond& q, double factor) {
 
 TEST(StressQuaternions, IsBitIdenticalForNegatedQuaternion) {
   StressCase stress("q and -q", "each other, all six methods", "same bits");
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(601);
-    for (int i = 0; i < tries(100); ++i) {
-      Water water = kStressWater;
-      Pose pose = stressed_pose(random, body, i, water);
-      if (i % 3 == 0) pose.q_WB = scaled(pose.q_WB, random.uniform(0.999, 1.001));
-      Pose opposite = pose;
-      opposite.q_WB = scaled(pose.q_WB, -1.0);
-      const auto check = [&](const Solver& solver) {
-        const BuoyancyResult one = buoyancy(solver, pose, water, body.mesh.center_B);
-        const BuoyancyResult other = buoyancy(solver, opposite, water, body.mesh.center_B);
-        stress.require(one.volume == other.volume && one.force_W == other.force_W &&
-                           one.torque_W == other.torque_W &&
-                           one.center_of_buoyancy_W == other.center_of_buoyancy_W,
-                       body.name + ", " + std::string(to_string(solver.method())));
-      };
-      for (const Method method : kAllMethods) check(Solver(body.mesh, method));
-      visit_exact_solvers(body.mesh, [&](const std::string&, const Solver& solver) { check(solver); });
-    }
-  }
+  for_each_turn(601, tries(100), [&](RandomPoses& random, const StressedBody& body, int i) {
+    Water water = kStressWater;
+    Pose pose = stressed_pose(random, body, i, water);
+    if (i % 3 == 0) pose.q_WB = scaled(pose.q_WB, random.uniform(0.999, 1.001));
+    Pose opposite = pose;
+    opposite.q_WB = scaled(pose.q_WB, -1.0);
+    const auto check = [&](const Solver& solver) {
+      const BuoyancyResult one = buoyancy(solver, pose, water, body.mesh.center_B);
+      const BuoyancyResult other = buoyancy(solver, opposite, water, body.mesh.center_B);
+      stress.require(one.volume == other.volume && one.force_W == other.force_W &&
+                         one.torque_W == other.torque_W &&
+                         one.center_of_buoyancy_W == other.center_of_buoyancy_W,
+                     body.name + ", " + std::string(to_string(solver.method())));
+    };
+    for (const Method method : kAllMethods) check(Solver(body.mesh, method));
+    visit_exact_solvers(body.mesh, [&](const std::string&, const Solver& solver) { check(solver); });
+  });
 }
 
 BodyState state_of(std::int32_t id, const Pose& pose) {
@@ -69,14 +66,11 @@ TEST(StressQuaternions, NormalisesNormsWithinThousandthOfOne) {
   StressCase stress("| |q| - 1 | <= 1e-3", "rational arithmetic at q/|q|", "G_V, G_V L_r");
   const std::vector<double> norms{1.0 - 9.99e-4, 1.0 - 1e-4, 1.0 - 1e-6,
                                   1.0 + 1e-9,    1.0 + 1e-5, 1.0 + 9.99e-4};
-  for (const StressedBody& body : stressed_bodies()) {
-    RandomPoses random(602);
-    for (int i = 0; i < tries(6); ++i) {
-      Pose pose = random.crossing(body.box, kStressWater);
-      pose.q_WB = scaled(pose.q_WB, norms[static_cast<std::size_t>(i)]);
-      check_exactly(stress, body, pose, kStressWater, reference_near(random, body));
-    }
-  }
+  for_each_turn(602, tries(6), [&](RandomPoses& random, const StressedBody& body, int i) {
+    Pose pose = random.crossing(body.box, kStressWater);
+    pose.q_WB = scaled(pose.q_WB, norms[static_cast<std::size_t>(i)]);
+    check_exactly(stress, body, pose, kStressWater, reference_near(random, body));
+  });
 
   const Scene scene = box_scene();
   const StressedBody box("box, by the handler", make_shape(BoxShape{.segments = {2, 2, 2}}));

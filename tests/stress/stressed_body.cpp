@@ -49,6 +49,14 @@ Vec3 reference_near(RandomPoses& random, const StressedBody& body) {
   return body.box.center() + 0.5 * body.mesh.diagonal * random.direction();
 }
 
+void for_each_turn(std::uint64_t seed, int turns,
+                   const std::function<void(RandomPoses&, const StressedBody&, int)>& check) {
+  for (const StressedBody& body : stressed_bodies()) {
+    RandomPoses random(seed);
+    for (int turn = 0; turn < turns; ++turn) check(random, body, turn);
+  }
+}
+
 void visit_exact_solvers(const HydrostaticMesh& mesh,
                          const std::function<void(const std::string&, const Solver&)>& visit) {
   for (const Method method : {Method::kExact, Method::kExactSurface}) {
@@ -59,6 +67,15 @@ void visit_exact_solvers(const HydrostaticMesh& mesh,
     visit("hierarchical on " + target, Solver(mesh, Method::kHierarchical));
   }
   force_simd_target("");
+}
+
+std::vector<BuoyancyResult> results_of(const HydrostaticMesh& mesh, const Pose& pose, const Water& water,
+                                       const Vec3& reference_B) {
+  std::vector<BuoyancyResult> results;
+  visit_exact_solvers(mesh, [&](const std::string&, const Solver& solver) {
+    results.push_back(buoyancy(solver, pose, water, reference_B));
+  });
+  return results;
 }
 
 double depth_factor(const Solver& solver, const Pose& pose, const Water& water) {

@@ -1,6 +1,7 @@
 // The bodies that the catalogue's rows test, and their evaluation by every exact method.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -37,6 +38,10 @@ Pose stressed_pose(RandomPoses& random, const StressedBody& body, int turn, Wate
 // A random point in or near the body as the reference point of torques.
 Vec3 reference_near(RandomPoses& random, const StressedBody& body);
 
+// Calls check(random, body, turn) for `turns` turns with every body, whose random numbers start at `seed`.
+void for_each_turn(std::uint64_t seed, int turns,
+                   const std::function<void(RandomPoses&, const StressedBody&, int)>& check);
+
 // Calls visit(name, solver) for every exact method, and for `hierarchical` on every instruction set of this
 // processor.
 void visit_exact_solvers(const HydrostaticMesh& mesh,
@@ -47,6 +52,10 @@ void visit_exact_solvers(const HydrostaticMesh& mesh,
 // catalogue. Thin plates, whose V_T is negligible against that, need a factor of 8 on depth/L (measured on a
 // plate of 1 : 1e8 in 10 x 10 squares: 4.3).
 double depth_factor(const Solver& solver, const Pose& pose, const Water& water);
+
+// In the order of visit_exact_solvers().
+std::vector<BuoyancyResult> results_of(const HydrostaticMesh& mesh, const Pose& pose, const Water& water,
+                                       const Vec3& reference_B);
 
 bool same_bits(const BuoyancyResult& a, const BuoyancyResult& b);
 
