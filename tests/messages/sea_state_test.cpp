@@ -18,6 +18,7 @@
 #include "tests/messages/random_messages.h"
 #include "tests/support/allocation_count.h"
 #include "tests/support/byte_vector.h"
+#include "tests/waves/seas.h"
 #include "waves/sea_snapshot.h"
 
 namespace buoyancy {
@@ -69,20 +70,15 @@ sea_state_t to_generated(const SeaState& state) {
 
 // A wind sea and a swell, with directions and phases of all sizes.
 Sea wind_sea_and_swell(const Water& water = {}, double depth = kInfinity, const Vec3& current_W = kCurrent) {
-  SeaDescription description;
-  description.depth = depth;
+  IrregularWaves waves = wind_sea(2.0, 8.0);
+  waves.direction = 330.0;
+  SeaDescription description =
+      sea_of({waves, RegularWave{.height = 1.0, .period = 12.0, .direction = -180.0, .phase = 1234.5},
+              WaveComponents{{0.0, 1.0, 180.0, 359.9}, {0.1, 1.3, 3600.5, -720.25}, {0.2, 0.7, 90.0, 180.0}}},
+             WavePressure::kWheeler, depth);
   description.time_origin = 1'700'000'000'000'000;
   description.ramp = 20.0;
   description.current_W = current_W;
-  IrregularWaves waves;
-  waves.significant_wave_height = 2.0;
-  waves.peak_period = 8.0;
-  waves.direction = 330.0;
-  waves.spreading = 10.0;
-  waves.directions = 5;
-  description.systems = {
-      waves, RegularWave{.height = 1.0, .period = 12.0, .direction = -180.0, .phase = 1234.5},
-      WaveComponents{{0.0, 1.0, 180.0, 359.9}, {0.1, 1.3, 3600.5, -720.25}, {0.2, 0.7, 90.0, 180.0}}};
   return *Sea::make(description, water);
 }
 
@@ -248,9 +244,8 @@ TEST(SeaState, OfAStillSeaIsStill) {
   const Sea again = received(still);
   EXPECT_TRUE(again.is_still());
   EXPECT_EQ(again.components().size(), 0U);
-  SeaDescription description;
-  description.pressure = WavePressure::kHydrostatic;
-  EXPECT_EQ(received(*Sea::make(description, {})).pressure(), WavePressure::kHydrostatic);
+  EXPECT_EQ(received(*Sea::make({.pressure = WavePressure::kHydrostatic, .systems = {}}, {})).pressure(),
+            WavePressure::kHydrostatic);
 }
 
 TEST(SeaState, LevelIsTheMessages) {

@@ -19,6 +19,7 @@
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"
 #include "tests/truth/reference_load.h"
+#include "tests/waves/seas.h"
 #include "wave_loads/wave_load.h"
 
 namespace buoyancy {
@@ -128,15 +129,6 @@ void check_by_still_water(StressCase& stress, const Situation& at, double allowe
   });
 }
 
-SeaDescription sea_of(WaveComponents waves, WavePressure pressure = WavePressure::kWheeler,
-                      double depth = kInfinity) {
-  SeaDescription description;
-  description.pressure = pressure;
-  description.depth = depth;
-  description.systems = {std::move(waves)};
-  return description;
-}
-
 // A wave's angular frequency in water of gravity 1, which these seas have.
 double frequency_of(double length, double depth = kInfinity) {
   const double k = 2.0 * kPi / length;
@@ -150,7 +142,7 @@ TEST(StressWaves, TakesAmplitudesOfZero) {
                     "the load's bound");
   RandomPoses random(1);
   for (const WavePressure pressure : kPressures) {
-    SeaDescription description = sea_of({{0.2, frequency_of(3.0), 30.0, 0.0}}, pressure);
+    SeaDescription description = sea_of({WaveComponents{{0.2, frequency_of(3.0), 30.0, 0.0}}}, pressure);
     description.ramp = 10.0;
     description.time_origin = 1'000'000;
     const Sea sea = Sea::make(description, kStressWater).value();
@@ -171,8 +163,9 @@ TEST(StressWaves, TakesTinyAmplitudes) {
   RandomPoses random(2);
   for (const WavePressure pressure : kPressures) {
     for (const double amplitude : {1e-12, 1e-300}) {
-      const Sea sea =
-          Sea::make(sea_of({{amplitude, frequency_of(3.0), 30.0, 0.0}}, pressure), kStressWater).value();
+      const Sea sea = Sea::make(sea_of({WaveComponents{{amplitude, frequency_of(3.0), 30.0, 0.0}}}, pressure),
+                                kStressWater)
+                          .value();
       const SeaSnapshot snapshot(sea);
       for (const WaveBodyUnderTest& body : wave_bodies()) {
         for (const double tolerance : {1e-3, 1e-5}) {
@@ -190,7 +183,8 @@ TEST(StressWaves, TakesWavesOfATenthOfAMillimetre) {
   RandomPoses random(3);
   for (const WavePressure pressure : kPressures) {
     const Sea sea =
-        Sea::make(sea_of({{5e-7, frequency_of(1e-4), 30.0, 0.0}}, pressure), kStressWater).value();
+        Sea::make(sea_of({WaveComponents{{5e-7, frequency_of(1e-4), 30.0, 0.0}}}, pressure), kStressWater)
+            .value();
     const SeaSnapshot snapshot(sea);
     for (const WaveBodyUnderTest& body : wave_bodies()) {
       const Pose pose = pose_across(random, body, sea, snapshot, 1.0, 2.0);
@@ -203,7 +197,9 @@ TEST(StressWaves, TakesVeryLongWaves) {
   StressCase stress("waves: 1e6 m long, 2,000 m high", "adaptive integration of the sea", "the load's bound");
   RandomPoses random(4);
   for (const WavePressure pressure : kPressures) {
-    const Sea sea = Sea::make(sea_of({{1e3, frequency_of(1e6), 30.0, 70.0}}, pressure), kStressWater).value();
+    const Sea sea =
+        Sea::make(sea_of({WaveComponents{{1e3, frequency_of(1e6), 30.0, 70.0}}}, pressure), kStressWater)
+            .value();
     const SeaSnapshot snapshot(sea);
     for (const WaveBodyUnderTest& body : wave_bodies()) {
       for (const double tolerance : {1e-2, 1e-5}) {
@@ -221,10 +217,10 @@ TEST(StressWaves, TakesBodiesFarAwayToday) {
   Water tilted = kStressWater;
   tilted.up_W = Vec3(0.3, -0.5, 0.7).normalized();
   for (const Water& water : {kStressWater, tilted}) {
-    const Sea sea =
-        Sea::make(sea_of({{0.1, frequency_of(3.0), 30.0, 70.0}, {0.05, frequency_of(1.5), -110.0, 10.0}}),
-                  water)
-            .value();
+    const Sea sea = Sea::make(sea_of({WaveComponents{{0.1, frequency_of(3.0), 30.0, 70.0},
+                                                     {0.05, frequency_of(1.5), -110.0, 10.0}}}),
+                              water)
+                        .value();
     const std::int64_t utime = 1'790'000'000'123'456;
     SeaSnapshot snapshot(sea);
     snapshot.set_time(utime);
@@ -244,8 +240,8 @@ TEST(StressWaves, TakesWaterHardlyDeeperThanItsTroughs) {
   RandomPoses random(6);
   for (const double excess : {1e-2, 1e-6}) {
     const double depth = 0.4 * (1.0 + excess);
-    const Sea sea = Sea::make(sea_of({{0.3, frequency_of(8.0, depth), 30.0, 70.0},
-                                      {0.1, frequency_of(5.0, depth), -110.0, 10.0}},
+    const Sea sea = Sea::make(sea_of({WaveComponents{{0.3, frequency_of(8.0, depth), 30.0, 70.0},
+                                                     {0.1, frequency_of(5.0, depth), -110.0, 10.0}}},
                                      WavePressure::kWheeler, depth),
                               kStressWater)
                         .value();
@@ -264,7 +260,9 @@ TEST(StressWaves, TakesSteepSeas) {
                     "the load's bound");
   RandomPoses random(7);
   const Sea sea =
-      Sea::make(sea_of({{1.2 * 3.0 / (2.0 * kPi), frequency_of(3.0), 30.0, 70.0}}), kStressWater).value();
+      Sea::make(sea_of({WaveComponents{{1.2 * 3.0 / (2.0 * kPi), frequency_of(3.0), 30.0, 70.0}}}),
+                kStressWater)
+          .value();
   const SeaSnapshot snapshot(sea);
   for (const WaveBodyUnderTest& body : wave_bodies()) {
     for (int turn = 0; turn < 3; ++turn) {
@@ -296,8 +294,8 @@ TEST(StressWaves, TakesDegenerateTrianglesAndNeedles) {
   bodies.emplace_back("plate", make_shape(BoxShape{.size = {1, 1, 1e-3}, .segments = {6, 6, 1}}));
   for (const WaveBodyUnderTest& body : bodies) {
     const double size = body.mesh.diagonal;
-    const Sea sea = Sea::make(sea_of({{0.02 * size, frequency_of(3.0 * size), 30.0, 70.0},
-                                      {0.01 * size, frequency_of(1.5 * size), -110.0, 10.0}}),
+    const Sea sea = Sea::make(sea_of({WaveComponents{{0.02 * size, frequency_of(3.0 * size), 30.0, 70.0},
+                                                     {0.01 * size, frequency_of(1.5 * size), -110.0, 10.0}}}),
                               kStressWater)
                         .value();
     const SeaSnapshot snapshot(sea);
@@ -312,7 +310,8 @@ TEST(StressWaves, BoundsHoldWhereTolerancesCannotBeMet) {
   StressCase stress("waves: a tolerance of 1e-9, which float32 meshes cannot meet",
                     "adaptive integration of the sea", "the load's bound");
   RandomPoses random(9);
-  const Sea sea = Sea::make(sea_of({{0.1, frequency_of(6.0), 30.0, 70.0}}), kStressWater).value();
+  const Sea sea =
+      Sea::make(sea_of({WaveComponents{{0.1, frequency_of(6.0), 30.0, 70.0}}}), kStressWater).value();
   const SeaSnapshot snapshot(sea);
   for (const WaveBodyUnderTest& body : wave_bodies()) {
     const Pose pose = pose_across(random, body, sea, snapshot, 1.0, 2.0);

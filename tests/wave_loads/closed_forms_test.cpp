@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/wave_loads/body_in_sea.h"
+#include "tests/waves/seas.h"
 
 namespace buoyancy {
 namespace {
@@ -29,24 +30,14 @@ double angular_frequency(double k, double depth = kInfinity) {
 
 SeaDescription one_wave(double amplitude, double k, double psi, WavePressure pressure,
                         double depth = kInfinity) {
-  SeaDescription description;
-  description.pressure = pressure;
-  description.depth = depth;
-  description.systems = {WaveComponents{{amplitude, angular_frequency(k, depth), 0.0, -psi * 180.0 / kPi}}};
-  return description;
+  return sea_of({WaveComponents{{amplitude, angular_frequency(k, depth), 0.0, -psi * 180.0 / kPi}}}, pressure,
+                depth);
 }
 
 SeaDescription tiny_wind_sea(double depth) {
-  IrregularWaves waves;
-  waves.significant_wave_height = 1e-4;
-  waves.peak_period = 3.0;
+  IrregularWaves waves = wind_sea(1e-4, 3.0);
   waves.direction = 25.0;
-  waves.spreading = 10.0;
-  waves.directions = 5;
-  SeaDescription description;
-  description.depth = depth;
-  description.systems = {waves};
-  return description;
+  return sea_of({waves}, WavePressure::kWheeler, depth);
 }
 
 Pose at(double x, double y, double z, double heading = 0.0) {

@@ -8,6 +8,7 @@
 
 #include "geometry/shapes.h"
 #include "hydrostatics/hydrostatic_mesh.h"
+#include "tests/waves/seas.h"
 
 namespace buoyancy {
 namespace {
@@ -15,12 +16,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 SeaDescription three_waves(WavePressure pressure, double depth) {
-  SeaDescription description;
-  description.pressure = pressure;
-  description.depth = depth;
-  description.systems = {
-      WaveComponents{{0.2, 2.0, 30.0, 40.0}, {0.1, 3.0, -60.0, 140.0}, {0.02, 5.0, 170.0, 300.0}}};
-  return description;
+  return sea_of({WaveComponents{{0.2, 2.0, 30.0, 40.0}, {0.1, 3.0, -60.0, 140.0}, {0.02, 5.0, 170.0, 300.0}}},
+                pressure, depth);
 }
 
 TEST(ReferenceLoad, SaysThatItsWorkDidNotSuffice) {

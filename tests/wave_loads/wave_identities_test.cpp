@@ -12,6 +12,7 @@
 
 #include "hydrostatics/buoyancy.h"
 #include "tests/wave_loads/body_in_sea.h"
+#include "tests/waves/seas.h"
 
 namespace buoyancy {
 namespace {
@@ -21,15 +22,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 WaveComponents some_waves() {
   return {{0.12, 2.2, 25.0, 40.0}, {0.08, 2.9, -50.0, 130.0}, {0.05, 3.9, 80.0, -110.0}};
-}
-
-SeaDescription sea_of(WaveComponents waves, WavePressure pressure = WavePressure::kWheeler,
-                      double depth = kInfinity) {
-  SeaDescription description;
-  description.pressure = pressure;
-  description.depth = depth;
-  description.systems = {std::move(waves)};
-  return description;
 }
 
 Pose floating_pose() {
@@ -66,19 +58,19 @@ TEST_P(WaveIdentity, HoldsForABodyAndASeaThatTurnTogether) {
   WaveComponents turned = some_waves();
   for (WaveComponent& wave : turned) wave.direction += kDegrees;
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(kDegrees * kPi / 180.0, Vec3::UnitZ()));
-  const TestSea sea(sea_of(some_waves(), GetParam()), 2'345'678);
-  const TestSea turned_sea(sea_of(turned, GetParam()), 2'345'678);
+  const TestSea sea(sea_of({some_waves()}, GetParam()), 2'345'678);
+  const TestSea turned_sea(sea_of({turned}, GetParam()), 2'345'678);
   const Pose pose = floating_pose();
   expect_same(sea, pose, turned_sea, {turn * pose.p_WB, turn * pose.q_WB});
 }
 
 TEST_P(WaveIdentity, HoldsForEveryUpwardDirection) {
-  const TestSea sea(sea_of(some_waves(), GetParam()), 2'345'678);
+  const TestSea sea(sea_of({some_waves()}, GetParam()), 2'345'678);
   const Pose pose = floating_pose();
   for (const Vec3& up : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(0.6, 0.0, -0.8)}) {
     Water water;
     water.up_W = up;
-    const TestSea other(sea_of(some_waves(), GetParam()), 2'345'678, water);
+    const TestSea other(sea_of({some_waves()}, GetParam()), 2'345'678, water);
     Mat3 R;
     R << other.sea.axes().e1_W, other.sea.axes().e2_W, up;
     expect_same(sea, pose, other, {R * pose.p_WB, Eigen::Quaterniond(R) * pose.q_WB});
@@ -88,16 +80,15 @@ TEST_P(WaveIdentity, HoldsForEveryUpwardDirection) {
 TEST_P(WaveIdentity, HoldsForAShiftOfTheLevel) {
   Water water;
   water.level = 7.5;
-  const TestSea sea(sea_of(some_waves(), GetParam()), 2'345'678);
-  const TestSea other(sea_of(some_waves(), GetParam()), 2'345'678, water);
+  const TestSea sea(sea_of({some_waves()}, GetParam()), 2'345'678);
+  const TestSea other(sea_of({some_waves()}, GetParam()), 2'345'678, water);
   Pose raised = floating_pose();
   raised.p_WB.z() += water.level;
   expect_same(sea, floating_pose(), other, raised);
 }
 
 TEST_P(WaveIdentity, HoldsAPeriodLater) {
-  SeaDescription description = sea_of({}, GetParam());
-  description.systems = {RegularWave{0.4, 4.0, 20.0, 30.0}};
+  const SeaDescription description = sea_of({RegularWave{0.4, 4.0, 20.0, 30.0}}, GetParam());
   const TestSea sea(description, 1'234'567);
   const TestSea later(description, 1'234'567 + 4'000'000);
   const TestSea between(description, 1'234'567 + 2'000'000);
@@ -110,9 +101,7 @@ TEST_P(WaveIdentity, HoldsAPeriodLater) {
 
 // Phases are reduced from 1e6 m and more.
 TEST_P(WaveIdentity, HoldsManyWavesAway) {
-  SeaDescription description = sea_of({}, GetParam());
-  description.systems = {RegularWave{0.4, 4.0, 0.0, 30.0}};
-  const TestSea sea(description, 1'234'567);
+  const TestSea sea(sea_of({RegularWave{0.4, 4.0, 0.0, 30.0}}, GetParam()), 1'234'567);
   Pose far = floating_pose();
   far.p_WB.x() += 40'000.0 * 2.0 * kPi / sea.sea.prepared().wave_number[0];
   expect_same(sea, floating_pose(), sea, far, 1e-6);
@@ -125,28 +114,21 @@ TEST_P(WaveIdentity, HoldsForComponentsThatAreSplit) {
     split.push_back(wave);
     split.push_back(wave);
   }
-  const TestSea sea(sea_of(some_waves(), GetParam()), 2'345'678);
-  const TestSea other(sea_of(split, GetParam()), 2'345'678);
+  const TestSea sea(sea_of({some_waves()}, GetParam()), 2'345'678);
+  const TestSea other(sea_of({split}, GetParam()), 2'345'678);
   expect_same(sea, floating_pose(), other, floating_pose());
 }
 
 // Components of one direction are summed together; those that differ by a hair are not.
 TEST_P(WaveIdentity, HoldsForDirectionsThatDifferByAHair) {
-  IrregularWaves waves;
-  waves.significant_wave_height = 0.5;
-  waves.peak_period = 3.0;
-  waves.spreading = 10.0;
+  const IrregularWaves waves{.significant_wave_height = 0.5, .peak_period = 3.0, .spreading = 10.0};
   for (const double depth : {kInfinity, 3.0}) {
-    SeaDescription description;
-    description.pressure = GetParam();
-    description.depth = depth;
-    description.systems = {waves};
-    const TestSea sea(description, 2'345'678);
+    const TestSea sea(sea_of({waves}, GetParam(), depth), 2'345'678);
     WaveComponents components = sea.sea.components();
     for (std::size_t i = 0; i < components.size(); ++i) {
       components[i].direction += 1e-9 * static_cast<double>(i);
     }
-    const TestSea other(sea_of(components, GetParam(), depth), 2'345'678);
+    const TestSea other(sea_of({components}, GetParam(), depth), 2'345'678);
     ASSERT_TRUE(sea.expansion.slots.any());
     ASSERT_FALSE(other.expansion.slots.any());
     expect_same(sea, floating_pose(), other, floating_pose(), 1e-7);
@@ -168,7 +150,7 @@ TEST(WaveLimit, WheelerInVeryLongWavesIsThePlaneAtTheHeightOfTheCrest) {
     // The crest is at the body.
     const double phase = -k * pose.p_WB.x() * 180.0 / kPi;
     constexpr double kA = 0.3;
-    const TestSea sea(sea_of({{kA, std::sqrt(kStandardGravity * k), 0.0, phase}}));
+    const TestSea sea(sea_of({WaveComponents{{kA, std::sqrt(kStandardGravity * k), 0.0, phase}}}));
     Water raised;
     raised.level = kA;
     raised.density = raised.gravity = 1.0;
@@ -193,7 +175,8 @@ TEST(WaveLimit, HydrostaticInLongWavesIsTheTangentPlane) {
     // The body is on the slope.
     const double phase = -90.0 - k * pose.p_WB.x() * 180.0 / kPi;
     const double a = 0.2 / k;
-    const TestSea sea(sea_of({{a, std::sqrt(kStandardGravity * k), 0.0, phase}}, WavePressure::kHydrostatic));
+    const TestSea sea(sea_of({WaveComponents{{a, std::sqrt(kStandardGravity * k), 0.0, phase}}},
+                             WavePressure::kHydrostatic));
     Water tilted;
     tilted.up_W = Vec3(-0.2, 0.0, 1.0).normalized();
     tilted.level = tilted.up_W.dot(Vec3(pose.p_WB.x(), pose.p_WB.y(), 0.0));
@@ -220,11 +203,11 @@ TEST(WaveLimit, HydrostaticDoesNotKnowTheDepth) {
     const double k = wave.angular_frequency * wave.angular_frequency / kStandardGravity;
     wave.angular_frequency = std::sqrt(kStandardGravity * k * std::tanh(k * kDepth));
   }
-  const TestSea sea(sea_of(deep, WavePressure::kHydrostatic));
-  const TestSea other(sea_of(finite, WavePressure::kHydrostatic, kDepth));
+  const TestSea sea(sea_of({deep}, WavePressure::kHydrostatic));
+  const TestSea other(sea_of({finite}, WavePressure::kHydrostatic, kDepth));
   expect_same(sea, floating_pose(), other, floating_pose(), 1e-6);
-  const TestSea wheeler(sea_of(deep));
-  const TestSea other_wheeler(sea_of(finite, WavePressure::kWheeler, kDepth));
+  const TestSea wheeler(sea_of({deep}));
+  const TestSea other_wheeler(sea_of({finite}, WavePressure::kWheeler, kDepth));
   EXPECT_GT((exact_surface_load(rock(), wheeler, floating_pose()).force -
              exact_surface_load(rock(), other_wheeler, floating_pose()).force)
                 .norm(),
@@ -237,7 +220,7 @@ TEST(WaveLimit, WheelerTendsToDeepWaterAsOneOverTheDepth) {
   constexpr double kW = 3.5;
   const double k = kW * kW / kStandardGravity;
   const WaveComponents wave{{kA, kW, 30.0, 10.0}};
-  const TestSea deep(sea_of(wave));
+  const TestSea deep(sea_of({wave}));
   Pose pose = floating_pose();
   pose.p_WB.z() = -0.5;
   const WaveLoad load = hierarchical_load(rock(), deep, pose, 1e-6);
@@ -245,7 +228,7 @@ TEST(WaveLimit, WheelerTendsToDeepWaterAsOneOverTheDepth) {
   double previous = 0.0;
   for (const double depth : {20.0, 40.0, 80.0}) {
     ASSERT_LT(std::exp(-2.0 * k * depth), 1e-9);  // nothing else depends on the depth
-    const TestSea finite(sea_of(wave, WavePressure::kWheeler, depth));
+    const TestSea finite(sea_of({wave}, WavePressure::kWheeler, depth));
     const double difference = (exact_surface_load(rock(), finite, pose).force - exact.force).norm();
     const double bound = rock().mesh.area * kA * kA / (std::numbers::e * depth);
     EXPECT_LT(difference, bound);

@@ -14,22 +14,12 @@
 #include "tests/hydrostatics/random_poses.h"
 #include "tests/support/allocation_count.h"
 #include "tests/wave_loads/body_in_sea.h"
+#include "tests/waves/seas.h"
 
 namespace buoyancy {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-SeaDescription wind_sea(double height) {
-  IrregularWaves waves;
-  waves.significant_wave_height = height;
-  waves.peak_period = 3.0;
-  waves.spreading = 10.0;
-  waves.directions = 5;
-  SeaDescription description;
-  description.systems = {waves};
-  return description;
-}
 
 double period_of(double length) {
   return std::sqrt(2.0 * kPi * length / kStandardGravity);
@@ -37,7 +27,7 @@ double period_of(double length) {
 
 TEST(WaveLoad, OfADryBodyIsNone) {
   const SeaBody sphere(SphereShape{1.0, 10});
-  const TestSea sea(wind_sea(0.5));
+  const TestSea sea(sea_of({wind_sea(0.5, 3.0)}));
   Pose pose;
   pose.p_WB.z() = 1.01 + sea.sea.max_elevation();
   const WaveLoad load = hierarchical_load(sphere, sea, pose, 1e-3);
@@ -51,7 +41,7 @@ TEST(WaveLoad, OfADeepBodyIsTheWeightOfItsWater) {
   const SeaBody sphere(SphereShape{1.0, 20});
   Pose pose;
   pose.p_WB = {3.0, 4.0, -200.0};
-  const WaveLoad load = hierarchical_load(sphere, TestSea(wind_sea(0.5)), pose, 1e-3);
+  const WaveLoad load = hierarchical_load(sphere, TestSea(sea_of({wind_sea(0.5, 3.0)})), pose, 1e-3);
   EXPECT_NEAR((load.force - sphere.mesh.volume * Vec3::UnitZ()).norm(), 0.0, load.force_bound);
   EXPECT_LE(load.force_bound, 1e-3 * sphere.mesh.volume);
   EXPECT_EQ(load.volume, sphere.mesh.volume);
@@ -71,12 +61,9 @@ TEST(WaveLoad, BoundsTheVolumeAboutAsTheForceInLongWaves) {
           waves.push_back({0.005 * length, 2.0 * kPi / period_of(length), random.uniform(0.0, 360.0),
                            random.uniform(0.0, 360.0)});
         }
-        SeaDescription description;
-        description.pressure = pressure;
-        description.systems = {waves};
         const Pose pose{body.mesh.diagonal * random.uniform(-0.5, 0.4) * Vec3::UnitZ(), random.rotation()};
-        const WaveLoad load =
-            hierarchical_load(body, TestSea(description), pose, random.power_of_ten(-5.0, -2.0));
+        const WaveLoad load = hierarchical_load(body, TestSea(sea_of({waves}, pressure)), pose,
+                                                random.power_of_ten(-5.0, -2.0));
         EXPECT_LE(load.volume_bound, 2.5 * load.force_bound) << "case " << i;
       }
     }
@@ -133,10 +120,7 @@ TEST(WaveLoad, BoundsHardCases) {
     const SeaBody body(hard.shape);
     for (const WavePressure pressure : {WavePressure::kWheeler, WavePressure::kHydrostatic}) {
       SCOPED_TRACE(hard.name + ", " + std::string(to_string(pressure)));
-      SeaDescription description;
-      description.pressure = pressure;
-      description.systems = {hard.waves};
-      const TestSea sea(description, 7'700'000);
+      const TestSea sea(sea_of({hard.waves}, pressure), 7'700'000);
       const WaveLoad load = hierarchical_load(body, sea, hard.pose, hard.tolerance);
       const bool is_capped = hard.name == "work that is capped";
       EXPECT_EQ(load.capped, is_capped);
@@ -158,7 +142,7 @@ TEST(WaveLoad, BoundsHardCases) {
 TEST(WaveLoad, OnASphereHasNoTorqueAboutItsCentre) {
   const SeaBody sphere(SphereShape{1.0, 40});
   for (const double height : {-3.5, -0.6, 0.0, 0.5}) {
-    const TestSea sea(wind_sea(0.5), static_cast<std::int64_t>(1e7 * (height + 4.0)));
+    const TestSea sea(sea_of({wind_sea(0.5, 3.0)}), static_cast<std::int64_t>(1e7 * (height + 4.0)));
     const WaveLoad load = hierarchical_load(sphere, sea, turned({3.0, 4.0, height}), 1e-4);
     // The polyhedron is not quite a sphere.
     EXPECT_LE(load.torque.norm(), load.torque_bound + 3e-4 * load.force.norm()) << height;
@@ -167,7 +151,7 @@ TEST(WaveLoad, OnASphereHasNoTorqueAboutItsCentre) {
 
 TEST(WaveLoad, MomentIsThatOfTheVolumeUnderTheSurface) {
   const SeaBody box(BoxShape{{2.0, 2.0, 2.0}, {12, 12, 12}});
-  const TestSea sea(wind_sea(0.5));
+  const TestSea sea(sea_of({wind_sea(0.5, 3.0)}));
   const Pose pose = turned({3.0, 4.0, 0.1}, {0.9, 0.3, -0.2, 0.1});
   const WaveLoad load = hierarchical_load(box, sea, pose, 1e-4);
   EXPECT_NEAR((load.moment - exact_surface_load(box, sea, pose).moment).norm(), 0.0, 2e-5 * box.mesh.volume);
@@ -175,7 +159,7 @@ TEST(WaveLoad, MomentIsThatOfTheVolumeUnderTheSurface) {
 
 TEST(WaveLoad, AllocatesNothingAfterWarmUp) {
   const SeaBody rock(RockShape{1.0, 16, 0.4, 3});
-  TestSea sea(wind_sea(0.5));
+  TestSea sea(sea_of({wind_sea(0.5, 3.0)}));
   const auto load_at = [&](std::int64_t utime) {
     sea.snapshot.set_time(utime);
     EXPECT_GT(hierarchical_load(rock, sea, turned({1.0, 2.0, -0.1}), 1e-3).force_bound, 0.0);
@@ -190,15 +174,10 @@ TEST(WaveLoad, AllocatesNothingAfterWarmUp) {
 // a second.
 TEST(WaveLoad, CapsItsWorkInSeasOfManyComponents) {
   for (const int components : {256, 4096}) {
-    IrregularWaves waves;
-    waves.significant_wave_height = 0.3;
-    waves.peak_period = 2.0;
-    waves.cutoff = 6.0;
-    waves.frequencies = components;
-    SeaDescription description;
-    description.systems = {waves};
+    const IrregularWaves waves{
+        .significant_wave_height = 0.3, .peak_period = 2.0, .frequencies = components, .cutoff = 6.0};
     const SeaBody rock(RockShape{20.0, 30, 0.1, 3});
-    const WaveLoad load = hierarchical_load(rock, TestSea(description), turned({1.0, 2.0, -1.0}), 1e-6);
+    const WaveLoad load = hierarchical_load(rock, TestSea(sea_of({waves})), turned({1.0, 2.0, -1.0}), 1e-6);
     EXPECT_TRUE(load.capped);
     EXPECT_GT(load.cells, 200) << "the case is no hard one";
     EXPECT_LE(load.cells * components, (2'048 + 2 * 20'000) * 256);

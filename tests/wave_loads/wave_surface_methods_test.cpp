@@ -15,6 +15,7 @@
 #include "tests/hydrostatics/test_meshes.h"
 #include "tests/support/allocation_count.h"
 #include "tests/wave_loads/body_in_sea.h"
+#include "tests/waves/seas.h"
 
 namespace buoyancy {
 namespace {
@@ -27,19 +28,6 @@ HydrostaticMesh rock(double radius, std::int32_t frequency) {
 
 HydrostaticMesh box(double size, std::int32_t segments) {
   return mesh_of(BoxShape{{size, 1.5 * size, 0.8 * size}, {segments, segments, segments}});
-}
-
-SeaDescription wind_sea(double height, WavePressure pressure, double depth = kInfinity) {
-  IrregularWaves waves;
-  waves.significant_wave_height = height;
-  waves.peak_period = 3.0;
-  waves.spreading = 10.0;
-  waves.directions = 5;
-  SeaDescription description;
-  description.pressure = pressure;
-  description.depth = depth;
-  description.systems = {waves};
-  return description;
 }
 
 Pose tilted(double height) {
@@ -130,7 +118,9 @@ struct Setting {
 
 class WaveSurfaceMethods : public ::testing::TestWithParam<Setting> {
  protected:
-  SeaDescription sea(double height) const { return wind_sea(height, GetParam().pressure, GetParam().depth); }
+  SeaDescription sea(double height) const {
+    return sea_of({wind_sea(height, 3.0)}, GetParam().pressure, GetParam().depth);
+  }
 };
 
 TEST_P(WaveSurfaceMethods, MatchTheirDefinitionsOnAllTargets) {
@@ -226,7 +216,7 @@ TEST(WaveSurfaceMethods, InStillWaterMatchThePlanarMethods) {
   Water water;
   water.up_W = Vec3(0.2, -0.3, 0.9).normalized();
   water.level = 0.7;
-  const TestSea at(wind_sea(0.0, WavePressure::kWheeler), 0, water);
+  const TestSea at(sea_of({wind_sea(0.0, 3.0)}), 0, water);
   Pose pose = tilted(0.0);
   pose.p_WB -= (water.up_W.dot(pose.p_WB) - 0.5) * water.up_W;
   const Vec3 reference_B(0.4, -0.2, 0.7);
@@ -243,7 +233,7 @@ TEST(WaveSurfaceMethods, InStillWaterMatchThePlanarMethods) {
 
 TEST(WaveSurfaceMethods, OfADeepBodyAreTheWeightOfItsWater) {
   const HydrostaticMesh mesh = box(1.0, 8);
-  const TestSea at(wind_sea(0.5, WavePressure::kWheeler), kUtime);
+  const TestSea at(sea_of({wind_sea(0.5, 3.0)}), kUtime);
   const Pose pose = tilted(-500.0);
   for (const auto method : {fast_surface_in_waves, exact_surface_in_waves}) {
     const WaveLoad load = method(mesh, at.snapshot, pose, Vec3::Zero());
@@ -254,7 +244,7 @@ TEST(WaveSurfaceMethods, OfADeepBodyAreTheWeightOfItsWater) {
 
 TEST(WaveSurfaceMethods, OfADryBodyAreZeroAndSayHowExact) {
   const HydrostaticMesh mesh = rock(1.0, 5);
-  const TestSea at(wind_sea(0.5, WavePressure::kWheeler), kUtime);
+  const TestSea at(sea_of({wind_sea(0.5, 3.0)}), kUtime);
   const double crest = at.sea.max_elevation();
   for (const auto method : {fast_surface_in_waves, exact_surface_in_waves}) {
     const WaveLoad dry = method(mesh, at.snapshot, tilted(crest + 3.0), Vec3::Zero());
@@ -273,7 +263,7 @@ TEST(WaveSurfaceMethods, OfADryBodyAreZeroAndSayHowExact) {
 TEST(WaveSurfaceMethods, AllocateNothingAfterTheFirstQuery) {
   const HydrostaticMesh large = rock(1.0, 20);
   const HydrostaticMesh small = rock(0.02, 10);  // summed in double
-  TestSea at(wind_sea(0.5, WavePressure::kWheeler), kUtime);
+  TestSea at(sea_of({wind_sea(0.5, 3.0)}), kUtime);
   for (const auto method : {fast_surface_in_waves, exact_surface_in_waves}) {
     method(large, at.snapshot, tilted(-0.1), Vec3::Zero());
     method(small, at.snapshot, tilted(-0.1), Vec3::Zero());

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/waves/seas.h"
 #include "waves/wave_spectrum.h"
 
 namespace buoyancy {
@@ -21,23 +22,14 @@ using ::testing::SizeIs;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-IrregularWaves wind_sea() {
-  IrregularWaves waves;
-  waves.significant_wave_height = 2.0;
-  waves.peak_period = 8.0;
-  waves.spreading = 10.0;
-  waves.directions = 5;
-  return waves;
-}
+const IrregularWaves kWindSea = wind_sea(2.0, 8.0);
 
 std::vector<WaveSystemReport> report(const SeaDescription& description) {
   return report_wave_systems(description, Sea::make(description, {}).value());
 }
 
 std::vector<WaveSystemReport> report_systems(std::vector<WaveSystem> systems) {
-  SeaDescription description;
-  description.systems = std::move(systems);
-  return report(description);
+  return report(sea_of(std::move(systems)));
 }
 
 TEST(SeaReport, DescribesRegularWaves) {
@@ -55,13 +47,13 @@ TEST(SeaReport, DescribesRegularWaves) {
 }
 
 TEST(SeaReport, DescribesSpectraOfEachSystem) {
-  IrregularWaves given = wind_sea();
+  IrregularWaves given = kWindSea;
   given.gamma = 3.3;
-  IrregularWaves fully_developed = wind_sea();
+  IrregularWaves fully_developed = kWindSea;
   fully_developed.gamma = 1.0;
   fully_developed.significant_wave_height = 1.0;
   fully_developed.directions = 2;
-  const auto reports = report_systems({RegularWave{3.0, 12.0, 0.0, 0.0}, wind_sea(), given, fully_developed});
+  const auto reports = report_systems({RegularWave{3.0, 12.0, 0.0, 0.0}, kWindSea, given, fully_developed});
   ASSERT_EQ(reports.size(), 4U);
   EXPECT_EQ(reports[1].type, "jonswap");
   EXPECT_EQ(reports[1].components, 200U);
@@ -83,7 +75,7 @@ TEST(SeaReport, CalculatesThePeakOfComponents) {
   EXPECT_EQ(one.type, "components");
   ASSERT_TRUE(one.peak);
   EXPECT_NEAR(one.peak->period, kTurn / 0.7, 1e-13);
-  IrregularWaves waves = wind_sea();
+  IrregularWaves waves = kWindSea;
   waves.gamma = 3.3;
   const WaveSystemReport many = report_systems({components_of(waves, 0)}).at(0);
   ASSERT_TRUE(many.peak);
@@ -120,10 +112,7 @@ std::vector<std::string> warnings(const SeaDescription& description) {
 }
 
 std::vector<std::string> warnings(WaveSystem system, double depth = std::numeric_limits<double>::infinity()) {
-  SeaDescription description;
-  description.depth = depth;
-  description.systems = {std::move(system)};
-  return warnings(description);
+  return warnings(sea_of({std::move(system)}, WavePressure::kWheeler, depth));
 }
 
 RegularWave regular(double steepness, double period) {
@@ -148,7 +137,7 @@ TEST(SeaReport, WarnsOfWavesTooHighForTheDepth) {
   EXPECT_THAT(warnings(RegularWave{1.55, 20.0, 0.0, 0.0}, 2.0), IsEmpty());
   EXPECT_THAT(warnings(RegularWave{1.9, 8.0, 0.0, 0.0}, 2.0),
               ElementsAre(HasSubstr("less than 1.56 m, at which such waves break: 0.78 of the depth")));
-  IrregularWaves waves = wind_sea();
+  IrregularWaves waves = kWindSea;
   waves.peak_period = 12.0;
   EXPECT_THAT(warnings(waves, 3.4), IsEmpty());
   EXPECT_THAT(warnings(waves, 3.3),
@@ -157,10 +146,7 @@ TEST(SeaReport, WarnsOfWavesTooHighForTheDepth) {
 
 TEST(SeaReport, WarnsOfSpectraTooSteep) {
   const auto of = [](double steepness, double period) {
-    IrregularWaves waves = wind_sea();
-    waves.peak_period = period;
-    waves.significant_wave_height = steepness * kStandardGravity * period * period / kTurn;
-    return warnings(waves);
+    return warnings(wind_sea(steepness * kStandardGravity * period * period / kTurn, period));
   };
   EXPECT_THAT(of(0.066, 5.0), IsEmpty());
   EXPECT_THAT(of(0.067, 5.0), ElementsAre(HasSubstr("2 pi Hs / (g Tp^2) is 1/15 up to Tp = 8 s")));
@@ -179,19 +165,15 @@ TEST(SeaReport, WarnsOfComponentsAloneAndTogether) {
   EXPECT_THAT(
       warnings(WaveComponents{{0.5, w, 0.0, 0.0}, {0.5, 1.1 * w, 0.0, 0.0}, {0.5, 0.9 * w, 0.0, 0.0}}),
       ElementsAre(HasSubstr("Hs where")));
-  SeaDescription received;
-  received.systems = {WaveComponents{{1.8, w, 0.0, 0.0}}};
-  const Sea sea = Sea::make(received, {}).value();
+  const Sea sea = Sea::make(sea_of({WaveComponents{{1.8, w, 0.0, 0.0}}}), {}).value();
   ASSERT_EQ(sea_warnings("received", sea, {}).size(), 1U);
   EXPECT_EQ(sea_warnings("received", sea, {})[0].subject, "received: the sea");
 }
 
 TEST(SeaReport, WarnsOfSystemsThatBreakTogether) {
-  SeaDescription description;
-  IrregularWaves waves = wind_sea();
-  waves.significant_wave_height = 5.0;
-  description.systems = {waves, waves};
-  EXPECT_THAT(warnings(description), ElementsAre(HasSubstr("pool: the sea: a wave height of 7.07")));
+  const IrregularWaves waves = wind_sea(5.0, 8.0);
+  EXPECT_THAT(warnings(sea_of({waves, waves})),
+              ElementsAre(HasSubstr("pool: the sea: a wave height of 7.07")));
 }
 
 TEST(SeaReport, RepeatsWhenItsRecordIsLikeItsBeginning) {
@@ -200,18 +182,16 @@ TEST(SeaReport, RepeatsWhenItsRecordIsLikeItsBeginning) {
   EXPECT_EQ(of(WaveComponents{{0.0, 1.0, 0.0, 0.0}}), std::numeric_limits<double>::infinity());
   // Beats: |cos(0.05 t)| is 1/3 again after 38.2 s.
   EXPECT_NEAR(of(WaveComponents{{1.0, 0.9, 0.0, 0.0}, {1.0, 1.0, 0.0, 0.0}}), 38.2, 5.0);
-  EXPECT_EQ(of(wind_sea()), std::numeric_limits<double>::infinity());
-  IrregularWaves few = wind_sea();
+  EXPECT_EQ(of(kWindSea), std::numeric_limits<double>::infinity());
+  IrregularWaves few = kWindSea;
   few.directions = 1;
   few.frequencies = 40;
   EXPECT_NEAR(of(few) / 60.0, 7.5, 2.0) << "minutes";
 }
 
 TEST(SeaReport, TakesTheDepthIntoAccount) {
-  SeaDescription description;
-  description.systems = {RegularWave{0.1, 100.0, 0.0, 0.0}};
-  description.depth = 2.0;
-  const WaveSystemReport wave = report(description).at(0);
+  const WaveSystemReport wave =
+      report(sea_of({RegularWave{0.1, 100.0, 0.0, 0.0}}, WavePressure::kWheeler, 2.0)).at(0);
   EXPECT_NEAR(wave.peak->wavelength, 100.0 * std::sqrt(kStandardGravity * 2.0), 1.0)
       << "a shallow-water wave";
 }

@@ -23,21 +23,19 @@ constexpr std::int64_t kToday = 1'795'478'400'123'457;  // [us], in 2026
 
 Sea make_sea(std::vector<WaveSystem> systems, const std::function<void(SeaDescription&)>& change = {},
              const Water& water = {}) {
-  SeaDescription description;
-  description.systems = std::move(systems);
+  SeaDescription description{.systems = std::move(systems)};
   if (change) change(description);
   return Sea::make(description, water).value();
 }
 
 Sea wind_sea(double height, double depth = std::numeric_limits<double>::infinity(),
              const Vec3& current_W = Vec3::Zero()) {
-  IrregularWaves waves;
-  waves.significant_wave_height = height;
-  waves.peak_period = 5.0;
-  waves.direction = 30.0;
-  waves.spreading = 10.0;
-  waves.directions = 3;
-  waves.frequencies = 10;
+  const IrregularWaves waves{.significant_wave_height = height,
+                             .peak_period = 5.0,
+                             .direction = 30.0,
+                             .spreading = 10.0,
+                             .frequencies = 10,
+                             .directions = 3};
   return make_sea({waves}, [&](SeaDescription& description) {
     description.depth = depth;
     description.current_W = current_W;
@@ -159,9 +157,7 @@ TEST(SeaSnapshot, RampScalesTheWaves) {
 TEST(SeaSnapshot, PressureIsZeroAtTheSurfaceAndAbove) {
   for (const WavePressure pressure : {WavePressure::kWheeler, WavePressure::kHydrostatic}) {
     for (const double depth : {4.0, std::numeric_limits<double>::infinity()}) {
-      IrregularWaves waves;
-      waves.significant_wave_height = 1.0;
-      waves.peak_period = 4.0;
+      const IrregularWaves waves{.significant_wave_height = 1.0, .peak_period = 4.0};
       const Sea sea = make_sea({waves}, [&](SeaDescription& description) {
         description.pressure = pressure;
         description.depth = depth;
@@ -178,9 +174,7 @@ TEST(SeaSnapshot, PressureIsZeroAtTheSurfaceAndAbove) {
 }
 
 TEST(SeaSnapshot, HydrostaticPressureIsThatOfTheDepth) {
-  IrregularWaves waves;
-  waves.significant_wave_height = 1.0;
-  waves.peak_period = 4.0;
+  const IrregularWaves waves{.significant_wave_height = 1.0, .peak_period = 4.0};
   const Sea sea = make_sea(
       {waves}, [](SeaDescription& description) { description.pressure = WavePressure::kHydrostatic; });
   SeaSnapshot now(sea);

@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/waves/seas.h"
 #include "waves/sea_snapshot.h"
 #include "waves/wave_spectrum.h"
 
@@ -23,20 +24,7 @@ using ::testing::HasSubstr;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-SeaDescription of_systems(std::vector<WaveSystem> systems) {
-  SeaDescription description;
-  description.systems = std::move(systems);
-  return description;
-}
-
-IrregularWaves wind_sea() {
-  IrregularWaves waves;
-  waves.significant_wave_height = 2.0;
-  waves.peak_period = 8.0;
-  waves.spreading = 10.0;
-  waves.directions = 5;
-  return waves;
-}
+const IrregularWaves kWindSea = wind_sea(2.0, 8.0);
 
 std::string error_of(const SeaDescription& description, const Water& water = {}) {
   const Expected<Sea> sea = Sea::make(description, water);
@@ -44,7 +32,7 @@ std::string error_of(const SeaDescription& description, const Water& water = {})
 }
 
 TEST(Sea, JoinsItsSystems) {
-  const Expected<Sea> sea = Sea::make(of_systems({wind_sea(), RegularWave{3.0, 12.0, 90.0, 0.0}}), {});
+  const Expected<Sea> sea = Sea::make(sea_of({kWindSea, RegularWave{3.0, 12.0, 90.0, 0.0}}), {});
   ASSERT_TRUE(sea) << sea.error().message();
   EXPECT_EQ(sea->components().size(), 201U);
   EXPECT_EQ(sea->prepared().size(), 201U);
@@ -55,8 +43,8 @@ TEST(Sea, JoinsItsSystems) {
 }
 
 TEST(Sea, OfItsOwnComponentsIsTheSameSea) {
-  const Expected<Sea> sea = Sea::make(of_systems({wind_sea()}), {});
-  const Expected<Sea> again = Sea::make(of_systems({sea->components()}), {});
+  const Expected<Sea> sea = Sea::make(sea_of({kWindSea}), {});
+  const Expected<Sea> again = Sea::make(sea_of({sea->components()}), {});
   EXPECT_EQ(again->prepared().k1, sea->prepared().k1);
   EXPECT_EQ(again->prepared().k2_rest, sea->prepared().k2_rest);
   EXPECT_EQ(again->prepared().phase, sea->prepared().phase);
@@ -64,11 +52,9 @@ TEST(Sea, OfItsOwnComponentsIsTheSameSea) {
 
 TEST(Sea, OfZeroAmplitudesIsStill) {
   EXPECT_TRUE(Sea::make({}, {})->is_still());
-  EXPECT_TRUE(Sea::make(of_systems({RegularWave{0.0, 8.0, 0.0, 0.0}}), {})->is_still());
-  IrregularWaves calm = wind_sea();
-  calm.significant_wave_height = 0.0;
-  EXPECT_TRUE(Sea::make(of_systems({calm}), {})->is_still());
-  EXPECT_FALSE(Sea::make(of_systems({RegularWave{1e-6, 8.0, 0.0, 0.0}}), {})->is_still());
+  EXPECT_TRUE(Sea::make(sea_of({RegularWave{0.0, 8.0, 0.0, 0.0}}), {})->is_still());
+  EXPECT_TRUE(Sea::make(sea_of({wind_sea(0.0, 8.0)}), {})->is_still());
+  EXPECT_FALSE(Sea::make(sea_of({RegularWave{1e-6, 8.0, 0.0, 0.0}}), {})->is_still());
 }
 
 TEST(Sea, HorizontalAxesFollowUp) {
@@ -88,7 +74,7 @@ TEST(Sea, HorizontalAxesFollowUp) {
 }
 
 TEST(Sea, AmplitudesGrowAlongTheRamp) {
-  SeaDescription description = of_systems({RegularWave{1.0, 8.0, 0.0, 0.0}});
+  SeaDescription description = sea_of({RegularWave{1.0, 8.0, 0.0, 0.0}});
   EXPECT_EQ(Sea::make(description, {})->amplitude_factor(-1.0), 1.0) << "no ramp";
   description.ramp = 20.0;
   const Expected<Sea> sea = Sea::make(description, {});
@@ -103,7 +89,7 @@ TEST(Sea, AmplitudesGrowAlongTheRamp) {
 TEST(Sea, SteepnessOfOneOrTwoComponentsIsTheSumOfAk) {
   const double k = 1.0 / kStandardGravity;  // of 1 rad/s
   const auto steepness = [](WaveComponents components) {
-    return Sea::make(of_systems({std::move(components)}), {})->extreme_steepness();
+    return Sea::make(sea_of({std::move(components)}), {})->extreme_steepness();
   };
   EXPECT_EQ(steepness({}), 0.0);
   EXPECT_NEAR(steepness({{2.0, 1.0, 0.0, 0.0}}), 2.0 * k, 1e-15);
@@ -118,7 +104,7 @@ TEST(Sea, SteepnessOfManyComponentsIsFourDeviations) {
     const double k = component.angular_frequency * component.angular_frequency / kStandardGravity;
     squares += component.amplitude * k * component.amplitude * k;
   }
-  const Expected<Sea> sea = Sea::make(of_systems({components}), {});
+  const Expected<Sea> sea = Sea::make(sea_of({components}), {});
   EXPECT_NEAR(sea->extreme_steepness(), 4.0 * std::sqrt(0.5 * squares), 1e-14);
 }
 
@@ -131,7 +117,7 @@ TEST(Sea, IsTooSteepWherePressureFallsDownwardsUnderACrest) {
   };
   for (const double ak : {0.98, 1.02}) {
     const double amplitude = ak * kStandardGravity;  // k = 1 / g
-    const Expected<Sea> sea = Sea::make(of_systems({WaveComponents{{amplitude, 1.0, 0.0, 0.0}}}), {});
+    const Expected<Sea> sea = Sea::make(sea_of({WaveComponents{{amplitude, 1.0, 0.0, 0.0}}}), {});
     ASSERT_TRUE(sea) << sea.error().message();
     EXPECT_EQ(sea->is_too_steep(), ak > 1.0) << ak;
     EXPECT_EQ(pressure_rises(*sea), ak < 1.0) << ak;
@@ -149,7 +135,7 @@ struct Limited {
 template <typename Change>
 std::function<WaveSystem(double)> irregular(const Change& change) {
   return [change](double value) {
-    IrregularWaves waves = wind_sea();
+    IrregularWaves waves = kWindSea;
     change(waves, value);
     return WaveSystem(waves);
   };
@@ -204,7 +190,7 @@ TEST(Sea, TakesEveryNumberAtItsLimitsAndNamesOneBeyond) {
     const std::string name = limited.name;
     const bool is_count = name == "frequencies" || name == "directions";
     const auto error_at = [&limited](double value) {
-      return error_of(of_systems({RegularWave{1.0, 8.0, 0.0, 0.0}, limited.system_with(value)}));
+      return error_of(sea_of({RegularWave{1.0, 8.0, 0.0, 0.0}, limited.system_with(value)}));
     };
     const auto beyond = [is_count](double limit, double direction) {
       return is_count ? limit + direction : std::nextafter(limit, direction * kInfinity);
@@ -228,7 +214,7 @@ TEST(Sea, TakesEveryNumberAtItsLimitsAndNamesOneBeyond) {
     if (is_count) continue;
     for (const double value : {kNaN, kInfinity}) EXPECT_THAT(error_at(value), is_named);
   }
-  SeaDescription description = of_systems({RegularWave{1.0, 8.0, 0.0, 0.0}});
+  SeaDescription description = sea_of({RegularWave{1.0, 8.0, 0.0, 0.0}});
   description.ramp = 1e9;
   EXPECT_EQ(error_of(description), "no error");
   for (const double ramp : {std::nextafter(1e9, kInfinity), -1e-300, kNaN}) {
@@ -238,13 +224,13 @@ TEST(Sea, TakesEveryNumberAtItsLimitsAndNamesOneBeyond) {
 }
 
 TEST(Sea, SaysWhatRangeIsExpected) {
-  IrregularWaves waves = wind_sea();
+  IrregularWaves waves = kWindSea;
   waves.gamma = 100.0;
-  EXPECT_THAT(error_of(of_systems({waves})), HasSubstr("gamma = 100; expected a number from 1 to 10"));
+  EXPECT_THAT(error_of(sea_of({waves})), HasSubstr("gamma = 100; expected a number from 1 to 10"));
 }
 
 TEST(Sea, RefusesWavesHigherThanTheWaterIsDeep) {
-  SeaDescription description = of_systems({RegularWave{2.0, 8.0, 0.0, 0.0}});
+  SeaDescription description = sea_of({RegularWave{2.0, 8.0, 0.0, 0.0}});
   description.depth = 2.0;
   EXPECT_THAT(error_of(description), HasSubstr("height = 2; expected less than the water's depth, 2 m"));
   description.depth = std::nextafter(2.0, kInfinity);
@@ -257,7 +243,7 @@ TEST(Sea, RefusesWavesHigherThanTheWaterIsDeep) {
 
 TEST(Sea, RefusesSystemsWhoseTroughsReachTheBed) {
   const WaveComponents pair{{0.9, 1.0, 0.0, 0.0}, {0.9, 1.1, 0.0, 0.0}};
-  SeaDescription description = of_systems({pair});
+  SeaDescription description = sea_of({pair});
   description.depth = 1.0;
   EXPECT_THAT(error_of(description),
               HasSubstr("deepest trough = 1.8; expected less than the water's depth, 1 m"));
@@ -265,7 +251,7 @@ TEST(Sea, RefusesSystemsWhoseTroughsReachTheBed) {
   EXPECT_EQ(error_of(description), "no error");
   IrregularWaves waves;
   waves.significant_wave_height = 0.8;
-  description = of_systems({waves, waves});
+  description = sea_of({waves, waves});
   description.depth = 1.0;
   EXPECT_THAT(error_of(description), HasSubstr("deepest trough = 1.13"));
   description.depth = 1.2;
@@ -275,7 +261,7 @@ TEST(Sea, RefusesSystemsWhoseTroughsReachTheBed) {
 TEST(Sea, RefusesWavesWithoutGravity) {
   Water water;
   water.gravity = 0.0;
-  EXPECT_THAT(error_of(of_systems({RegularWave{1.0, 8.0, 0.0, 0.0}}), water), HasSubstr("gravity = 0"));
+  EXPECT_THAT(error_of(sea_of({RegularWave{1.0, 8.0, 0.0, 0.0}}), water), HasSubstr("gravity = 0"));
   EXPECT_EQ(error_of({}, water), "no error");
 }
 

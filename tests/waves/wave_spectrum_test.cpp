@@ -15,11 +15,7 @@ namespace buoyancy {
 namespace {
 
 IrregularWaves wind_sea() {
-  IrregularWaves waves;
-  waves.significant_wave_height = 2.0;
-  waves.peak_period = 8.0;
-  waves.gamma = 3.3;
-  return waves;
+  return {.significant_wave_height = 2.0, .peak_period = 8.0, .gamma = 3.3};
 }
 
 // Integral of w^n S(w), by the midpoint rule.
