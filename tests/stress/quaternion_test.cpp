@@ -2,7 +2,6 @@
 // through the request handler.
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -12,16 +11,13 @@
 #include "geometry/shapes.h"
 #include "messages/conversions.h"
 #include "tests/engine/box_scene.h"
+#include "tests/engine/invalid_states.h"
 #include "tests/stress/exact_truth.h"
 #include "tests/stress/stress_case.h"
 #include "tests/stress/stressed_body.h"
 
 namespace buoyancy {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMaxDouble = std::numeric_limits<double>::max();
 
 Eigen::Quaterniond scaled(const Eigen::Quaterniond& q, double factor) {
   return Eigen::Quaterniond(factor * q.w(), factor * q.x(), factor * q.y(), factor * q.z());
@@ -96,53 +92,6 @@ TEST(StressQuaternions, NormalisesNormsWithinThousandthOfOne) {
     const bool counted = std::abs(pose.q_WB.norm() - 1.0) > 1.1e-6;
     if (counted) stress.require(handler.counters().quaternions_normalised == before + 2, "counted");
   }
-}
-
-struct InvalidState {
-  std::string name;
-  BodyState state;
-  double lead_time;
-  BodyStatus status;
-};
-
-std::vector<InvalidState> invalid_states() {
-  std::vector<InvalidState> found;
-  const auto add = [&](const std::string& name, const BodyState& state, BodyStatus status,
-                       double lead_time = 0.0) {
-    found.push_back({name, state, lead_time, status});
-  };
-  const auto with_quaternion = [](double w, double x, double y, double z) {
-    BodyState state = upright(kBox, 0.1);
-    state.quaternion_wxyz = {w, x, y, z};
-    return state;
-  };
-  for (const double norm : {0.0, 1e-300, 0.5, 1.0 - 1.1e-3, 1.0 + 1.1e-3, 2.0, 1e200, kMaxDouble}) {
-    add("a quaternion of norm " + std::to_string(norm), with_quaternion(0.6 * norm, 0, 0.8 * norm, 0),
-        BodyStatus::kBadQuaternion);
-  }
-  for (const double value : {kNaN, kInfinity, -kInfinity}) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      BodyState state = upright(kBox, 0.1);
-      state.quaternion_wxyz[i] = value;
-      add("a quaternion with " + std::to_string(value), state, BodyStatus::kNonFinitePose);
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
-      BodyState state = upright(kBox, 0.1);
-      state.position[i] = value;
-      add("a position with " + std::to_string(value), state, BodyStatus::kNonFinitePose);
-      state = upright(kBox, 0.1);
-      state.linear_velocity[i] = value;
-      add("a velocity with " + std::to_string(value), state, BodyStatus::kNonFiniteTwist, 0.01);
-    }
-    add("a lead time of " + std::to_string(value), upright(kBox, 0.1), BodyStatus::kBadLeadTime, value);
-  }
-  BodyState fast = upright(kBox, 0.1);
-  fast.linear_velocity = {kMaxDouble, 0, 0};
-  add("a position that overflows", fast, BodyStatus::kOutOfRange, 10.0);
-  fast = upright(kBox, 0.1);
-  fast.angular_velocity = {0, kMaxDouble, 0};
-  add("a turn that overflows", fast, BodyStatus::kOutOfRange, 10.0);
-  return found;
 }
 
 TEST(StressQuaternions, RejectsInvalidPosesAndKeepsOtherBodies) {
