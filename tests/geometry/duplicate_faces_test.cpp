@@ -13,13 +13,6 @@
 namespace buoyancy {
 namespace {
 
-const RepairStep* step_of(const MeshValidation& validation, RepairKind kind) {
-  for (const RepairStep& step : validation.report.repair.steps) {
-    if (step.kind == kind) return &step;
-  }
-  return nullptr;
-}
-
 TEST(DuplicateFaces, StoresAPartOnceThatIsStoredTwice) {
   const TriangleMesh part = rock_mesh(4);
   const double volume = validate(part).report.volume;

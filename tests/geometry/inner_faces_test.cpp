@@ -17,13 +17,6 @@
 namespace buoyancy {
 namespace {
 
-const RepairStep* step_of(const MeshValidation& validation, RepairKind kind) {
-  for (const RepairStep& step : validation.report.repair.steps) {
-    if (step.kind == kind) return &step;
-  }
-  return nullptr;
-}
-
 void add_quad(TriangleMesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   std::vector<std::int32_t> v;
   for (const Vec3& corner : {a, b, c, d}) v.push_back(mesh.add_vertex(corner));

@@ -11,12 +11,6 @@
 namespace buoyancy::ping {
 namespace {
 
-std::string joined(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += line + "\n";
-  return text;
-}
-
 // The causes that are named for two scenes that differ in one respect.
 std::string causes(const SceneText& here, const SceneText& of_service) {
   const Scene scene = here.scene();

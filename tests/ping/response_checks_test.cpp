@@ -22,29 +22,26 @@ class ChangedReply {
   }
 
   ResponseChecks compare(const std::function<void(WrenchResponse&)>& change) const {
-    WrenchResponse response;
-    EXPECT_FALSE(decode(expected_.wrenches, response));
-    change(response);
-    Reply reply = received(expected_);
-    encode(response, reply.wrenches);
-    ResponseChecks checks(scene_);
-    checks.add(request_id(0), states_, expected_, reply);
-    return checks;
+    return compare_after(&Reply::wrenches, change);
   }
   ResponseChecks compare_loads_after(const std::function<void(BodiesLoads&)>& change) const {
-    BodiesLoads loads;
-    EXPECT_FALSE(decode(expected_.loads, loads));
-    change(loads);
-    Reply reply = received(expected_);
-    encode(loads, reply.loads);
-    ResponseChecks checks(scene_);
-    checks.add(request_id(0), states_, expected_, reply);
-    return checks;
+    return compare_after(&Reply::loads, change);
   }
 
   const Scene& scene() const { return scene_; }
 
  private:
+  template <typename Message>
+  ResponseChecks compare_after(ByteVector Reply::*bytes, const std::function<void(Message&)>& change) const {
+    Reply reply = received(expected_);
+    auto message = decoded<Message>(reply.*bytes);
+    change(message);
+    encode(message, reply.*bytes);
+    ResponseChecks checks(scene_);
+    checks.add(request_id(0), states_, expected_, reply);
+    return checks;
+  }
+
   Scene scene_;
   RequestHandler handler_;
   std::vector<BodyState> states_;

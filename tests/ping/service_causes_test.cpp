@@ -16,12 +16,6 @@
 namespace buoyancy::ping {
 namespace {
 
-std::string joined(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += line + "\n";
-  return text;
-}
-
 TEST(ServiceCauses, NameWhatStatusTells) {
   const Scene scene = SceneText{}.scene();
   ServiceInfo service;

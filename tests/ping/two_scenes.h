@@ -65,6 +65,12 @@ struct SceneText {
   Scene scene() const { return scene_of(text()); }
 };
 
+inline std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
 inline const std::string kWaves =
     R"(waves = [{ type = "regular", height = 0.4, period = 5.0, direction = 0.0 }])";
 inline const std::string kDrag = "[body.drag]\nlinear = [20, 60, 60, 5, 5, 8]\n";
