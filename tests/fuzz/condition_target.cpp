@@ -8,13 +8,13 @@
 //                  one of the scene's, bit 3 its kind and index are small, bit 4 its numbers are within 0 and
 //                  1, bit 5 its utime is small; then 44 bytes, the packet, or fewer at the end
 //   each request   1 byte, its utime
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "engine/request_handler.h"
 #include "tests/fuzz/fuzz_bytes.h"
 #include "tests/fuzz/fuzz_check.h"
+#include "tests/fuzz/fuzz_packets.h"
 #include "tests/support/byte_vector.h"
 #include "tests/support/damaged_boxes.h"
 #include "tests/support/scene_of.h"
@@ -30,19 +30,10 @@ const Scene& boxes() {
   return kScene;
 }
 
-// Maps any number into 0 to 1; inside, to itself.
-double folded(double value) {
-  if (value >= 0.0 && value <= 1.0) return value;
-  return std::isfinite(value) ? std::abs(std::remainder(value, 1.0)) : 0.25;
-}
-
 ByteVector next_packet(FuzzBytes& bytes) {
   const unsigned options = bytes.byte();
   ByteVector packet = copy_of(bytes.take(kPacketSize));
-  if ((options & 1U) != 0) {
-    const ByteVector valid = encoded(ConditionChange{});
-    std::copy_n(valid.begin(), std::min(packet.size(), sizeof(std::int64_t)), packet.begin());
-  }
+  if ((options & 1U) != 0) write_fingerprint(encoded(ConditionChange{}), packet);
   ConditionChange change;
   if (decode(packet, change)) {
     require(change == ConditionChange{}, "a message that does not decode changes nothing");
@@ -55,8 +46,8 @@ ByteVector next_packet(FuzzBytes& bytes) {
     change.index &= 1;
   }
   if ((options & 16U) != 0) {
-    change.flooded = folded(change.flooded);
-    change.liquid_volume = folded(change.liquid_volume);
+    change.flooded = folded(change.flooded, 0.0, 1.0);
+    change.liquid_volume = folded(change.liquid_volume, 0.0, 1.0);
   }
   if ((options & 32U) != 0) change.utime &= 0xff;
   return encoded(change);

@@ -20,6 +20,7 @@
 #include "scene/scene.h"
 #include "tests/fuzz/fuzz_bytes.h"
 #include "tests/fuzz/fuzz_check.h"
+#include "tests/fuzz/fuzz_packets.h"
 #include "tests/support/byte_vector.h"
 #include "tests/support/scene_of.h"
 
@@ -101,32 +102,15 @@ const std::array<Kind, 5>& kinds() {
   return kKinds;
 }
 
-void write_fingerprint(const Kind& kind, Packet& packet) {
-  const std::size_t size = std::min(packet.size(), sizeof(std::int64_t));
-  std::copy_n(kind.empty.begin(), size, packet.begin());
-}
-
-// Truncates the packet after the last complete body and writes the number of bodies.
-void write_count(const Kind& kind, Packet& packet) {
-  const std::size_t fixed = kind.empty.size();
-  if (kind.body_size == 0 || packet.size() < fixed) return;
-  const std::size_t bodies = (packet.size() - fixed) / kind.body_size;
-  packet.resize(fixed + bodies * kind.body_size);
-  for (std::size_t i = 0; i < 4; ++i) {
-    packet[fixed - 1 - i] = static_cast<std::uint8_t>(bodies >> (8 * i));
-  }
-}
-
 Packet next_packet(FuzzBytes& bytes) {
   const unsigned options = bytes.byte();
   const std::size_t length = bytes.word();
-  const Bytes taken = bytes.take(length);
-  Packet packet(taken.begin(), taken.end());
+  Packet packet = copy_of(bytes.take(length));
   const std::size_t number = options & 7U;
   if (number < kinds().size()) {
     const Kind& kind = kinds()[number];
-    if ((options & 8U) != 0) write_fingerprint(kind, packet);
-    if ((options & 16U) != 0) write_count(kind, packet);
+    if ((options & 8U) != 0) write_fingerprint(kind.empty, packet);
+    if ((options & 16U) != 0 && kind.body_size != 0) write_count(kind.empty.size(), kind.body_size, packet);
   }
   return packet;
 }

@@ -7,7 +7,6 @@
 //             of the scene, bit 3 the scene's up is slanted, bit 4 numbers of components are made usual ones
 //   place     3 doubles: two coordinates, and a lead time; then an int64, the utime; not finite: 0
 //   packet    all bytes that remain
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -15,6 +14,7 @@
 #include "messages/sea_state.h"
 #include "tests/fuzz/fuzz_bytes.h"
 #include "tests/fuzz/fuzz_check.h"
+#include "tests/fuzz/fuzz_packets.h"
 #include "tests/support/byte_vector.h"
 #include "waves/sea_snapshot.h"
 
@@ -44,23 +44,6 @@ Place next_place(FuzzBytes& bytes) {
   return place;
 }
 
-void write_fingerprint(ByteVector& packet) {
-  ByteVector empty;
-  encode(SeaState{}, empty);
-  std::copy_n(empty.begin(), std::min(packet.size(), sizeof(std::int64_t)), packet.begin());
-}
-
-// Truncates the packet after the last complete component and writes the number of components.
-void write_count(ByteVector& packet) {
-  const std::size_t fixed = sea_state_size(0);
-  if (packet.size() < fixed) return;
-  const std::size_t component = sea_state_size(1) - fixed;
-  const std::size_t components = (packet.size() - fixed) / component;
-  packet.resize(sea_state_size(components));
-  for (std::size_t i = 0; i < 4; ++i)
-    packet[fixed - 1 - i] = static_cast<std::uint8_t>(components >> (8 * i));
-}
-
 void use_medium(const Water& water, const Vec3& current_W, SeaState& state) {
   const HorizontalAxes axes = horizontal_axes(water.up_W);
   state.e1 = to_array(axes.e1_W);
@@ -68,13 +51,6 @@ void use_medium(const Water& water, const Vec3& current_W, SeaState& state) {
   state.up = to_array(water.up_W);
   state.gravity = water.gravity;
   state.current = to_array(current_W);
-}
-
-// Maps any number into a range, most numbers to another one; inside the range, to itself.
-double folded(double value, double min, double max) {
-  if (value >= min && value <= max) return value;
-  const double fraction = std::isfinite(value) ? std::abs(std::remainder(value, 1.0)) : 0.25;
-  return min + (max - min) * fraction;
 }
 
 void use_usual_numbers(SeaState& state) {
@@ -126,8 +102,8 @@ void check(FuzzBytes bytes) {
   const Place place = next_place(bytes);
   const Bytes rest = bytes.take(sea_state_size(kMaxComponents));
   ByteVector packet = copy_of(rest);
-  if ((options & 1U) != 0) write_fingerprint(packet);
-  if ((options & 2U) != 0) write_count(packet);
+  if ((options & 1U) != 0) write_fingerprint(encoded(SeaState{}), packet);
+  if ((options & 2U) != 0) write_count(sea_state_size(0), sea_state_size(1) - sea_state_size(0), packet);
   SeaState state;
   if (decode(packet, state)) {
     require(state == SeaState{}, "a message that does not decode changes nothing");
