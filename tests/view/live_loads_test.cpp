@@ -27,12 +27,6 @@ class LivePageOfLoads : public PageTest {
                     "200", "--duration", "1000", "--retries", "100000"}));
     browser().open(view_->url());
   }
-  void TearDown() override {
-    PageTest::TearDown();
-    client_.reset();
-    view_.reset();
-    service_.reset();
-  }
 
   const std::vector<std::string> channel_{"--loads-channel", "LOADS"};
   std::unique_ptr<RunningService> service_;

@@ -46,12 +46,6 @@ class LivePage : public PageTest {
                     "200", "--duration", "1000", "--retries", "100000"}));
     browser().open(view_->url());
   }
-  void TearDown() override {
-    PageTest::TearDown();
-    client_.reset();
-    view_.reset();
-    service_.reset();
-  }
   static void wait_for_snapshots(int snapshots = 3) {
     browser().run("window.target = buoyancyView.snapshots + arguments[0];", snapshots);
     browser().wait_until("buoyancyView.snapshots >= window.target");

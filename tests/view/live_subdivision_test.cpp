@@ -26,10 +26,6 @@ class LivePageOfTanks : public PageTest {
     socket.send("POSE", encoded_by_lcm(upright_pose(0.25, 1)));
     browser().wait_until("buoyancyView.scene.bodies.get(1).group.visible");
   }
-  void TearDown() override {
-    PageTest::TearDown();
-    view_.reset();
-  }
 
   std::unique_ptr<RunningView> view_;
 };

@@ -29,10 +29,6 @@ class LivePageInWaves : public PageTest {
     browser().open(view_->url());
     browser().wait_until("window.buoyancyView && buoyancyView.snapshots > 0");
   }
-  void TearDown() override {
-    PageTest::TearDown();
-    view_.reset();
-  }
 
   void send_request(std::int64_t utime, double lead_time) {
     WrenchRequest request;
