@@ -31,6 +31,8 @@ using testing::IsEmpty;
 
 class BrowserTest : public PageTest {
  protected:
+  BrowserTest() { may_report_errors_ = true; }
+
   // Opens a page with this body.
   void show(const std::string& body) {
     browser().open_file(directory_.write(

@@ -81,7 +81,6 @@ TEST_F(LivePage, ShowsRunWithoutConsoleErrors) {
   EXPECT_TRUE(is_near({234, 243, 250}, 4)(image.pixel(canvas.left + 6, canvas.top + 6))) << "sky";
   const Colour water = image.pixel(canvas.left + 6, canvas.top + canvas.height - 6);
   EXPECT_GT(water.blue, water.red + 50) << "water";
-  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
 TEST_F(LivePage, ShowsServiceOfflineAndBack) {
@@ -95,7 +94,6 @@ TEST_F(LivePage, ShowsServiceOfflineAndBack) {
   browser().wait_until("buoyancyView.state === 'answering'");
   browser().wait_until(
       "!document.getElementById('notices').textContent.includes('No message from the service')");
-  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
 TEST_F(LivePage, ShowsServiceOfflineWhilePaused) {
@@ -128,12 +126,12 @@ TEST_F(LivePage, ShowsNoForceWithoutResponse) {
             nlohmann::json({true, false}));
   EXPECT_EQ(browser().run("return Array.from(document.querySelectorAll('#plots figure')).at(-1).className;"),
             "empty");
-  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
 TEST_F(LivePage, ReconnectsToRestartedView) {
   // Outside the ephemeral range, so that the port is still free when the view restarts.
   constexpr std::uint16_t kPort = 8667;
+  may_report_errors_ = true;  // while the view is away
   view_ = std::make_unique<RunningView>(kScene, std::vector<std::string>{}, kPort);
   browser().open(view_->url());
   browser().wait_until("window.buoyancyView && buoyancyView.snapshots > 3");
@@ -158,7 +156,6 @@ TEST_F(LivePage, ShowsBotCorePoseAndForceTorque) {
                           "return [markers.centre_of_buoyancy.visible, markers.force.position.z];"),
             nlohmann::json({false, 0.25}))
       << "at the body's origin";
-  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
 TEST_F(LivePage, RespondsToKeys) {

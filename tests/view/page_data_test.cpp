@@ -52,10 +52,6 @@ class PageData : public PageTest {
     browser().open_file(directory_.write("page.html", page));
     browser().wait_until(ready);
   }
-  void TearDown() override {
-    EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
-    PageTest::TearDown();
-  }
 
   TempDir directory_;
 };

