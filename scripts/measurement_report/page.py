@@ -2,15 +2,17 @@
 
 The page marks missing measurements and names their commands.
 """
+import re
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-import figures
 import markdown
+
+import figures
 import paper
 import tables
-from figures import Unusable, best_rows, grouped, microseconds, read_rows, significant
+from rows import COLUMNS, Unusable, best_rows, grouped, microseconds, read_rows, significant
 
 STYLE = Path(__file__).resolve().parent / "page.css"
 PAPER_TITLE = "Approximate and exact buoyancy calculation for real-time floating simulation of meshes"
@@ -33,7 +35,7 @@ class Part:
 
     def table(self, name, column):
         """Returns the table of a report that has this column."""
-        for table in markdown.tables(self.text(name)):
+        for table in tables.tables_in(self.text(name)):
             if column in table.header:
                 return table
         raise Unusable(f"{self.folder / name}: no table with a column '{column}'; expected the output of {self.command()}")
@@ -61,7 +63,7 @@ def find_part(folder):
 # --- The claims: each returns a figure, its unit and an explanation, or None if the models for it are missing ---------
 
 def accuracy(part):
-    rows = [r for r in part.rows("speed_accuracy.csv", figures.SPEED_ACCURACY_COLUMNS)
+    rows = [r for r in part.rows("speed_accuracy.csv", COLUMNS["speed_accuracy"])
             if r["method"] in ("exact", "exact_surface", "hierarchical") and float(r["tolerance"]) == 0]
     meshes = {(r["mesh"], r["triangles"]) for r in rows}
     targets = {r["target"] for r in rows if r["target"] != "-"}
@@ -72,7 +74,7 @@ def accuracy(part):
 
 
 def speed(part):
-    best = best_rows(part.rows("speed_accuracy.csv", figures.SPEED_ACCURACY_COLUMNS), "independent")
+    best = best_rows(part.rows("speed_accuracy.csv", COLUMNS["speed_accuracy"]), "independent")
     triangles, mesh = max((n, mesh) for mesh, n, m, t in best if m == "hierarchical" and "shuffled" not in mesh)
     time = {m: float(best[mesh, triangles, m, "0"]["median_ns"]) for m in ("read", *tables.LINEAR_EXACT, "hierarchical")}
     linear = min(tables.LINEAR_EXACT, key=time.get)
@@ -117,6 +119,21 @@ CLAIMS = [
 
 # --- The sections ----------------------------------------------------------------------------------------------------
 
+def html(text, level=4, label="table"):
+    """Returns a text as a part of the page, without its links and images, and each table in a box that scrolls if the page
+    is narrower. level: the level of all headings; label: what a table without a heading above it is."""
+    made = markdown.markdown(re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", text), extensions=["tables"])
+    made = re.sub(r"<th\b", '<th scope="col"', re.sub(r"(</?h)\d>", rf"\g<1>{level}>", made))
+    made = re.sub(r"<td(?=[^>]*>[^<]*MISSED)", '<td class="missed"', made)
+    parts = re.split(r"(<h\d>.*?</h\d>|<table>)", made)
+    for at, part in enumerate(parts):
+        if part.startswith("<h"):
+            label = re.sub(r"<.*?>", "", part)
+        elif part == "<table>":
+            parts[at] = f'<div class="scroll" role="region" aria-label="{label}" tabindex="0"><table>'
+    return "".join(parts).replace("</table>", "</table></div>")
+
+
 def details(summary, inner):
     return f"<details><summary>{escape(summary)}</summary>\n{inner}\n</details>"
 
@@ -126,7 +143,7 @@ def picture(figure, caption):
 
 
 def time_section(part):
-    rows = part.rows("speed_accuracy.csv", figures.SPEED_ACCURACY_COLUMNS)
+    rows = part.rows("speed_accuracy.csv", COLUMNS["speed_accuracy"])
     drawn = [(figures.speed_accuracy(rows),
               "Rocks of growing size. The accuracy and cost of an approximation grow with the mesh; the cost of "
               "<code>hierarchical</code> grows with the waterline only, and with a tolerance even less."),
@@ -139,22 +156,22 @@ def time_section(part):
                     "<p>Medians over independent poses; errors and bounds are the largest, relative to the whole "
                     "displacement, on the processor's best instruction set. <code>plain</code> is the paper's "
                     "exact method as a user would write it, in 40 lines of C++.</p>"
-                    + tables.times(rows).html("time and error of every mesh, method and tolerance")),
+                    + html(tables.times(rows).text(), label="time and error of every mesh, method and tolerance")),
             details("The report of the run: goals, growth, instruction sets, the tree, many bodies",
-                    markdown.html(part.text("report.md"), 4))]
+                    html(part.text("report.md")))]
 
 
 def figure4_section(part):
-    rows = part.rows("figure4.csv", figures.FIGURE4_COLUMNS)
+    rows = part.rows("figure4.csv", COLUMNS["paper_figure4"])
     return [picture(figures.paper_figure4(rows),
                     "The paper gives no numbers with its figure 4. The thick line is its closed form (section 5); the "
                     "curves are from this run. On a sphere the exact methods show the error of the inscribed mesh."),
             "<p>The paper's findings, compared with results on the same meshes:</p>",
-            paper.findings(rows).html("the paper's findings next to this run"),
+            html(paper.findings(rows).text(), label="the paper's findings next to this run"),
             details("The numbers: forces at five heights, and the largest errors",
-                    "<p>Force where ρg = 1.</p>" + tables.figure4_samples(rows).html("forces next to the closed form")
+                    "<p>Force where ρg = 1.</p>" + html(tables.figure4_samples(rows).text(), label="forces next to the closed form")
                     + "<p>Largest error of the force over all heights, relative to the whole.</p>"
-                    + tables.figure4(rows).html("largest errors"))]
+                    + html(tables.figure4(rows).text(), label="largest errors"))]
 
 
 def table1_section(part):
@@ -175,7 +192,7 @@ def table1_section(part):
             f'<p class="absent">Not available and therefore not compared: {escape(", ".join(absent))}. '
             f"{replaced}</p>" if absent else "",
             details("The numbers: table 1 next to this run",
-                    paper.table(compared).html("the paper's table 1 next to this run")
+                    html(paper.table(compared).text(), label="the paper's table 1 next to this run")
                     + "<p>* Compared with the paper's time for <code>exact</code>, which computes the same result.</p>")]
 
 
@@ -190,33 +207,33 @@ def catalogue(part, name):
 
 
 def stability_section(part):
-    rows = part.rows("error_under_stress.csv", figures.STRESS_COLUMNS)
+    rows = part.rows("error_under_stress.csv", COLUMNS["error_under_stress"])
     table, cases, checks, worst = catalogue(part, "table.md")
     in_time, timed, timed_checks, timed_worst = catalogue(part, "in_time.md")
     return [picture(figures.error_under_stress(rows),
                     "The exact methods are not affected. The dashed line is not a method of this service, but the "
                     "usual way of simulators: every vertex is transformed to the world frame in single precision."),
-            details("The numbers of the figure", tables.stress(rows).html("error under stress")),
+            details("The numbers of the figure", html(tables.stress(rows).text(), label="error under stress")),
             f"<p>The catalogue: {cases} kinds of stress, {grouped(checks)} checks; the largest value is {worst:.3g} of "
             "the limit. The limit for a volume is the gate G_V = ε (64 V + L A) with ε = 2⁻⁵², the diagonal L of the "
             "bounding box and the surface area A.</p>",
-            details("The catalogue, case by case", table.html("the stress catalogue")),
+            details("The catalogue, case by case", html(table.text(), label="the stress catalogue")),
             f"<p>In time: {timed} kinds of run, {grouped(timed_checks)} checks; the largest value is {timed_worst:.3g} "
             "of the limit.</p>",
-            details("The runs, case by case", in_time.html("runs of the simulator"))]
+            details("The runs, case by case", html(in_time.text(), label="runs of the simulator"))]
 
 
 def search_section(part):
     return ["<p>Random meshes and adversarial poses, checked with exact arithmetic: the largest errors "
             "relative to their limits and to the error bounds in the results. Errors of approximations and "
             "errors within a tolerance may reach their bound. A violated bound fails the search.</p>",
-            markdown.html(part.text("report.md"), 4)]
+            html(part.text("report.md"))]
 
 
 def report_section(name):
     def section(part):
         # Omit its heading, which would repeat the section's.
-        return [markdown.html("\n".join(line for line in part.text(name).splitlines() if not line.startswith("## ")), 3)]
+        return [html("\n".join(line for line in part.text(name).splitlines() if not line.startswith("## ")), 3)]
     return section
 
 

@@ -1,11 +1,11 @@
 """The paper's figure 4 and table 1 next to the results here."""
-from html import escape
+import math
 from pathlib import Path
 from typing import NamedTuple
 
-from figures import METHOD_ORDER, figure4_errors, grouped, read_rows, significant
-from markdown import Table
-from plot import METHODS, Figure, Panel, Scale, heading, marker, note, text
+from figures import SIZE_LABEL, STYLES, Drawing, set_up
+from rows import METHOD_ORDER, figure4_errors, grouped, read_rows, significant
+from tables import Table
 
 NUMBERS = Path(__file__).resolve().parents[2] / "bench" / "paper_numbers.csv"
 
@@ -80,35 +80,22 @@ def table(results):
 
 
 def figure(results):
-    models = list(dict.fromkeys((c.model, c.triangles) for c in results))
-    left, row_height, gap = 150, 24, 46
-    times = [c.us for c in results] + [c.paper_ms * 1000 for c in results if c.paper_ms]
-    height = 106 + gap * len(models) + row_height * len(results)
-    x = Scale(min(times) / 1.6, max(times) * 1.6, log=True, plain=True, label="time of one query, µs")
-    panel = Panel(left, 48, 1080 - left - 30, height - 98, x, None)
-    parts = panel.parts
-    parts.append(heading(1080, "The paper's table 1 and the same here"))
-    y = 48.0
-    for model in models:
-        title = escape(f"{model[0]}, {grouped(model[1])} triangles")
-        parts.append(text(left + 8, y + 26, title, weight="600", halo=True))
-        y += gap - 6
-        for c in (c for c in results if c[:2] == model):
-            at = y + row_height / 2
-            ours = panel.at_x(c.us)
-            parts.append(text(left - 10, at + 4, c.method, anchor="end"))
-            if c.paper_ms:
-                theirs = panel.at_x(c.paper_ms * 1000)
-                parts.append(f'<path d="M{ours:.1f} {at:.1f}H{theirs:.1f}" stroke="#888888" stroke-width="1.5"/>')
-                parts.append(f'<circle class="ring" cx="{theirs:.1f}" cy="{at:.1f}" r="5" fill="#ffffff" '
-                             f'stroke="#888888" stroke-width="2"><title>{c.method}, paper: {c.paper_ms:g} ms</title>'
-                             '</circle>')
-                parts.append(note((ours + theirs) / 2, at - 4, f"{c.paper_ms * 1000 / c.us:.0f} ×", halo=True))
-            parts.append(marker(ours, at, METHODS[c.method], f"{c.method}, here: {c.us:g} µs"))
-            y += row_height
-        y += 6
-    parts.append(note(1050, 42, "rings: the paper's; filled: here", anchor="end"))
+    drawing = Drawing("paper_table1", "Times of the paper's table 1 next to those measured here", 1080,
+                      160 + 24 * len(results), "The paper's table 1 and the same here")
+    axes = drawing.canvas.subplots()
+    set_up(axes, "time of one query, µs", log="x", plain_numbers=True)
+    axes.set_title("rings: the paper's; filled: here", loc="right")
+    axes.set_yticks(range(len(results)), [f"{c.model}, {grouped(c.triangles)}: {c.method}" for c in results])
+    axes.invert_yaxis()
+    for at, c in enumerate(results):
+        if c.paper_ms:
+            theirs = c.paper_ms * 1000
+            axes.plot([c.us, theirs], [at, at], color="#888888")
+            drawing.point(axes, theirs, at, f"{c.method}, paper: {c.paper_ms:g} ms",
+                          {"color": "#888888", "marker": "o", "markerfacecolor": "white", "markeredgewidth": 2})
+            axes.annotate(f"{theirs / c.us:.0f} ×", (math.sqrt(c.us * theirs), at), **{**SIZE_LABEL, "xytext": (0, 3)})
+        drawing.point(axes, c.us, at, f"{c.method}, here: {c.us:g} µs", STYLES[c.method])
     values = "; ".join(f"{c.model} {c.method}: " + (f"paper {c.paper_ms:g} ms, " if c.paper_ms else "") + f"here {c.us:g} µs"
                        for c in results)
-    return Figure("paper_table1", "Times of the paper's table 1 next to those measured here",
-                  f"Time of one query, logarithmic, a line per model and method. {values}.", 1080, height, parts)
+    drawing.description = f"Time of one query, logarithmic, a line per model and method. {values}."
+    return drawing

@@ -1,14 +1,51 @@
 """The tables of the results page and of the docs, made of the rows that the measuring programs write."""
 import json
 import math
+import re
+from dataclasses import dataclass
 
-from figures import (METHOD_ORDER, SWEEPS, Unusable, best_rows, figure4_errors, grouped, largest, microseconds, significant,
-                     wave_table_rows)
-from markdown import Table
-from plot import METHODS
+from rows import (METHOD_ORDER, METHODS, SWEEPS, Unusable, best_rows, figure4_errors, grouped, largest, microseconds,
+                  short_tolerance, significant, wave_table_rows)
 
 # The methods that visit the whole mesh and are exact to rounding.
 LINEAR_EXACT = ("plain", "exact", "exact_surface")
+
+
+@dataclass
+class Table:
+    header: list  # cells as Markdown
+    right: list  # per column: whether it is right-aligned
+    rows: list
+
+    def dictionaries(self):
+        """Returns the rows by column; of several columns of one name, the first counts."""
+        return [dict(reversed(list(zip(self.header, row)))) for row in self.rows]
+
+    def cells_of(self, column):
+        return [row[column] for row in self.dictionaries()]
+
+    def row(self, **where):
+        """Returns the first row with these cells."""
+        for row in self.dictionaries():
+            if where.items() <= row.items():
+                return row
+        raise Unusable(f"no row with {where} below the header {self.header}")
+
+    def text(self):
+        marks = ["---:" if right else "---" for right in self.right]
+        lines = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in (self.header, *self.rows)]
+        return "\n".join([lines[0], f"|{'|'.join(marks)}|", *lines[1:]])
+
+
+def tables_in(text):
+    """Returns the tables of a document."""
+    found = []
+    for lines in re.findall(r"(?:^\|.*\n?)+", text, re.MULTILINE):
+        header, marks, *rows = [[cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line.strip())[1:-1]]
+                                for line in lines.splitlines()]
+        rows = [(row + [""] * len(header))[:len(header)] for row in rows]
+        found.append(Table(header, [mark.endswith(":") for mark in marks], rows))
+    return found
 
 
 def table(header, left, rows):
@@ -59,7 +96,7 @@ def waves(rows):
         if absent:
             raise absent_row(absent[0], mesh, triangles, "waves")
         made.append([mesh, grouped(triangles), *(cell(cells[mesh, triangles, *kind]) for kind in kinds)])
-    titles = [f"`{method}`" if float(tolerance) == 0 else f"`{method}`, {float(tolerance):.0e}".replace("e-0", "e-")
+    titles = [f"`{method}`" if float(tolerance) == 0 else f"`{method}`, {short_tolerance(tolerance)}"
               for method, tolerance in kinds]
     return table(["time, µs (error of bound)", "triangles", *titles], 1, made)
 
@@ -125,7 +162,7 @@ def stress(rows):
     at = {}
     for row in rows:
         at.setdefault((row["sweep"], float(row["x"])), {})[row["method"]] = significant(float(row["error_of_whole"]))
-    return table(["stress", "by"] + [METHODS[m].label for m in methods], 1,
+    return table(["stress", "by"] + [METHODS[m] for m in methods], 1,
                  [[SWEEPS[sweep][0].split(";")[0], f"{x:.3g}"] + [of_method.get(m, "") for m in methods]
                   for (sweep, x), of_method in at.items()])
 
@@ -135,7 +172,7 @@ def sweeps(rows):
     methods = [*METHOD_ORDER, "float32_in_world"]
     errors = largest(rows, lambda row: (row["sweep"], row["method"]), "error_of_whole")
     return table(["largest over the sweep", *METHOD_ORDER, "single precision"], 1,
-                 [[SWEEPS[sweep][3], *(significant(errors[sweep, method]) for method in methods)]
+                 [[SWEEPS[sweep][2], *(significant(errors[sweep, method]) for method in methods)]
                   for sweep in dict.fromkeys(row["sweep"] for row in rows)])
 
 
@@ -146,7 +183,6 @@ def catalogue(paths):
         suites = json.loads(path.read_text(encoding="utf-8"))["testsuites"]
         for case in (case for suite in suites for case in suite["testsuite"] if "checks" in case):
             value = float(case["largest"])
-            cells = [case["row"], case["oracle"], case["gate"], f"{value:.3g}", case["largest_at"], case["checks"]]
-            made.append([cell.replace("|", "\\|") for cell in cells])
+            made.append([case["row"], case["oracle"], case["gate"], f"{value:.3g}", case["largest_at"], case["checks"]])
     return Table(["case", "oracle", "gate", "largest, in gates", "at", "checks"],
                  [False, False, False, True, False, True], made)
