@@ -4,6 +4,7 @@ Everything in a figure, including its text alternative, is computed from its row
 readers (Okabe and Ito), and each method has its own marker.
 """
 import io
+import math
 import re
 from dataclasses import dataclass
 from html import escape
@@ -75,7 +76,10 @@ class Drawing:
                 f'<desc id="{self.name}-desc">{escape(self.description)}</desc>{content.rstrip()}')
 
     def save(self, path):
-        """Writes the figure as a file."""
+        """Writes the figure as a file, .svg or .png."""
+        if path.suffix == ".png":
+            self.canvas.savefig(path, dpi=192)
+            return
         size = f'width="{self.width}" height="{self.height}"'
         path.write_text(self.svg(f'xmlns="http://www.w3.org/2000/svg" {size} ') + "\n", encoding="utf-8")
 
@@ -274,13 +278,46 @@ def error_under_stress(rows):
     return drawing
 
 
+# --- A run -----------------------------------------------------------------------------------------------------------
+
+def angles(row, up):
+    """Returns roll and pitch in degrees, relative to the upright attitude of a mesh with this up axis."""
+    w, x, y, z = (float(row[column]) for column in ("qw", "qx", "qy", "qz"))
+    if up == "y":
+        # Upright is a rotation by 90 degrees about the mesh's x axis, which is removed first.
+        half = math.sqrt(0.5)
+        w, x, y, z = half * (w + x), half * (x - w), half * (y + z), half * (z - y)
+    return (math.degrees(math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))),
+            math.degrees(math.asin(max(-1.0, min(1.0, 2 * (w * y - z * x))))))
+
+
+def run(rows, up="z"):
+    """Heave, roll, pitch and buoyant force of one body over time."""
+    rows = rows[::max(1, len(rows) // 2000)]
+    seconds = [float(row["utime"]) * 1e-6 for row in rows]
+    drawing = Drawing("run", "Heave, roll, pitch and buoyant force of a body over time", 960, 900)
+    heave, angle, force = drawing.canvas.subplots(3, sharex=True)
+    set_up(heave, upwards="heave of the mesh's origin (m)")
+    heave.plot(seconds, [float(row["pz"]) for row in rows], color="#0072b2")
+    set_up(angle, upwards="angle from upright (degrees)")
+    for values, name, colour in zip(zip(*(angles(row, up) for row in rows)), ("roll", "pitch"), ("#0072b2", "#d55e00")):
+        angle.plot(seconds, values, color=colour, label=name)
+    angle.legend(loc="upper right")
+    set_up(force, "time (s)", "buoyant force (N)")
+    force.plot(seconds, [float(row["fz"]) for row in rows], color="#0072b2")
+    drawing.description = (f"Three panels over {seconds[-1]:g} s. At the end the mesh's origin is at {float(rows[-1]['pz']):.3g} m "
+                           f"and the buoyant force is {float(rows[-1]['fz']):.4g} N.")
+    return drawing
+
+
 # The figures that have files of their own.
-DRAWN = {function.__name__: function for function in (speed_accuracy, wave_speed_accuracy, paper_figure4, error_under_stress)}
+DRAWN = {function.__name__: function
+         for function in (speed_accuracy, wave_speed_accuracy, paper_figure4, error_under_stress, run)}
 
 
-def draw(kind, source, output):
-    """Draws a figure from the rows of a CSV file as SVG."""
-    drawing = DRAWN[kind](read_rows(source, COLUMNS[kind]))
+def draw(kind, source, output, *more):
+    """Draws a figure from the rows of a CSV file as SVG or PNG."""
+    drawing = DRAWN[kind](read_rows(source, COLUMNS[kind]), *more)
     if drawing is None:
         raise Unusable(f"{source}: no rows that the figure shows")
     drawing.save(output)

@@ -13,6 +13,7 @@ COLUMNS = {
                             "force_error", "force_bound"],
     "paper_figure4": ["shape", "triangles", "method", "h", "force", "closed_form", "error_of_whole"],
     "error_under_stress": ["sweep", "x", "method", "error_of_whole"],
+    "run": ["utime", "pz", "qw", "qx", "qy", "qz", "fz"],
 }
 WAVE_COMPONENTS = 200
 # Of each sweep of error_under_stress: title, label of the horizontal axis, name in a table.
