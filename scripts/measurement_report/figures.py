@@ -58,7 +58,8 @@ class Drawing:
         self.canvas.suptitle(heading or title)
 
     def point(self, axes, x, y, tooltip, style):
-        axes.plot(x, y, **{**style, "linestyle": "none"}, gid=f"point_{len(self.tooltips)}")
+        # Above the labels of sizes (3), which are above the lines (2).
+        axes.plot(x, y, **{**style, "linestyle": "none"}, zorder=4, gid=f"point_{len(self.tooltips)}")
         self.tooltips.append(tooltip)
 
     def svg(self, attributes=""):
