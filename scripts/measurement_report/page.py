@@ -124,7 +124,7 @@ def html(text, level=4, label="table"):
     is narrower. level: the level of all headings; label: what a table without a heading above it is."""
     made = markdown.markdown(re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", text), extensions=["tables"])
     made = re.sub(r"<th\b", '<th scope="col"', re.sub(r"(</?h)\d>", rf"\g<1>{level}>", made))
-    made = re.sub(r"<td(?=[^>]*>[^<]*MISSED)", '<td class="missed"', made)
+    made = re.sub(r"<td(?=(?:(?!</td>).)*MISSED)", '<td class="missed"', made)
     parts = re.split(r"(<h\d>.*?</h\d>|<table>)", made)
     for at, part in enumerate(parts):
         if part.startswith("<h"):
