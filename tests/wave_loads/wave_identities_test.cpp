@@ -121,7 +121,8 @@ TEST_P(WaveIdentity, HoldsForComponentsThatAreSplit) {
 
 // Components of one direction are summed together; those that differ by a hair are not.
 TEST_P(WaveIdentity, HoldsForDirectionsThatDifferByAHair) {
-  const IrregularWaves waves{.significant_wave_height = 0.5, .peak_period = 3.0, .spreading = 10.0};
+  const IrregularWaves waves{
+      .significant_wave_height = 0.5, .peak_period = 3.0, .gamma = {}, .spreading = 10.0, .frequencies = {}};
   for (const double depth : {kInfinity, 3.0}) {
     const TestSea sea(sea_of({waves}, GetParam(), depth), 2'345'678);
     WaveComponents components = sea.sea.components();

@@ -174,8 +174,12 @@ TEST(WaveLoad, AllocatesNothingAfterWarmUp) {
 // a second.
 TEST(WaveLoad, CapsItsWorkInSeasOfManyComponents) {
   for (const int components : {256, 4096}) {
-    const IrregularWaves waves{
-        .significant_wave_height = 0.3, .peak_period = 2.0, .frequencies = components, .cutoff = 6.0};
+    const IrregularWaves waves{.significant_wave_height = 0.3,
+                               .peak_period = 2.0,
+                               .gamma = {},
+                               .spreading = {},
+                               .frequencies = components,
+                               .cutoff = 6.0};
     const SeaBody rock(RockShape{20.0, 30, 0.1, 3});
     const WaveLoad load = hierarchical_load(rock, TestSea(sea_of({waves})), turned({1.0, 2.0, -1.0}), 1e-6);
     EXPECT_TRUE(load.capped);

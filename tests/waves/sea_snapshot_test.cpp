@@ -32,6 +32,7 @@ Sea wind_sea(double height, double depth = std::numeric_limits<double>::infinity
              const Vec3& current_W = Vec3::Zero()) {
   const IrregularWaves waves{.significant_wave_height = height,
                              .peak_period = 5.0,
+                             .gamma = {},
                              .direction = 30.0,
                              .spreading = 10.0,
                              .frequencies = 10,
@@ -157,7 +158,11 @@ TEST(SeaSnapshot, RampScalesTheWaves) {
 TEST(SeaSnapshot, PressureIsZeroAtTheSurfaceAndAbove) {
   for (const WavePressure pressure : {WavePressure::kWheeler, WavePressure::kHydrostatic}) {
     for (const double depth : {4.0, std::numeric_limits<double>::infinity()}) {
-      const IrregularWaves waves{.significant_wave_height = 1.0, .peak_period = 4.0};
+      const IrregularWaves waves{.significant_wave_height = 1.0,
+                                 .peak_period = 4.0,
+                                 .gamma = {},
+                                 .spreading = {},
+                                 .frequencies = {}};
       const Sea sea = make_sea({waves}, [&](SeaDescription& description) {
         description.pressure = pressure;
         description.depth = depth;
@@ -174,7 +179,8 @@ TEST(SeaSnapshot, PressureIsZeroAtTheSurfaceAndAbove) {
 }
 
 TEST(SeaSnapshot, HydrostaticPressureIsThatOfTheDepth) {
-  const IrregularWaves waves{.significant_wave_height = 1.0, .peak_period = 4.0};
+  const IrregularWaves waves{
+      .significant_wave_height = 1.0, .peak_period = 4.0, .gamma = {}, .spreading = {}, .frequencies = {}};
   const Sea sea = make_sea(
       {waves}, [](SeaDescription& description) { description.pressure = WavePressure::kHydrostatic; });
   SeaSnapshot now(sea);

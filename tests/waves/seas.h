@@ -16,7 +16,12 @@ inline SeaDescription sea_of(std::vector<WaveSystem> systems, WavePressure press
 
 // Of five directions.
 inline IrregularWaves wind_sea(double height, double period) {
-  return {.significant_wave_height = height, .peak_period = period, .spreading = 10.0, .directions = 5};
+  return {.significant_wave_height = height,
+          .peak_period = period,
+          .gamma = {},
+          .spreading = 10.0,
+          .frequencies = {},
+          .directions = 5};
 }
 
 }  // namespace buoyancy

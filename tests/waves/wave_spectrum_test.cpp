@@ -15,7 +15,8 @@ namespace buoyancy {
 namespace {
 
 IrregularWaves wind_sea() {
-  return {.significant_wave_height = 2.0, .peak_period = 8.0, .gamma = 3.3};
+  return {
+      .significant_wave_height = 2.0, .peak_period = 8.0, .gamma = 3.3, .spreading = {}, .frequencies = {}};
 }
 
 // Integral of w^n S(w), by the midpoint rule.
