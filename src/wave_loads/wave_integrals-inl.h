@@ -340,7 +340,7 @@ HWY_INLINE VectorOf<Number> spread_of(const PatchMoments<Number>& m) {
 }
 
 // The integrals of a model over whole patches, or over patches that the surface crosses and that are not
-// clipped.
+// clipped. Of dry ones they are of no use.
 template <typename Number>
 HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, const PatchMoments<Number>& m,
                                             const PatchModel<Number>& model) {
@@ -409,7 +409,6 @@ HWY_INLINE PatchIntegrals<Number> integrate(const PatchQuery<Number>& query, con
       volume_remainder<Number>(m.area, distances, model) +
       hn::IfThenElse(model.whole, model.certificate_factor * model.mean_delta * m.area,
                      hn::MulAdd(depth.quadratic_error, m.area, quarter * model.s_curvature * m.mu2));
-  clear_where<Number>(model.dry, result);
   return result;
 }
 

@@ -49,9 +49,8 @@ class LoadSum {
     total_ = settled_ = 0.0;
   }
 
-  // Returns the number of the first result.
-  std::size_t add(const GroupsOfVector<Number>& groups, const PatchIntegrals<Number>& integrals,
-                  const CachedOfBatch& kept) {
+  void add(const GroupsOfVector<Number>& groups, const PatchIntegrals<Number>& integrals,
+           const CachedOfBatch& kept) {
     const LanesOf<Number> d;
     const std::size_t first = batch_count_ * kLanes<Number>;
     if (batch_count_ == batches_.size()) {
@@ -63,7 +62,6 @@ class LoadSum {
     batch.groups = groups;
     batch.kept = kept;
     const std::array<VectorOf<Number>, kRows> rows = rows_of(integrals);
-#pragma GCC unroll 16
     for (std::size_t row = 0; row < kRows; ++row) hn::Store(rows[row], d, batch.rows[row].data());
     const VectorOf<Number> error =
         hn::Max(integrals.force_error, set<Number>(per_lever_) * integrals.torque_error);
@@ -76,7 +74,6 @@ class LoadSum {
       const auto n = first + static_cast<std::size_t>(std::countr_zero(lanes));
       expected_[n] = errors_[n] * static_cast<Number>(kErrorOfClipping);
     }
-    return first;
   }
 
   // Adds kRows numbers to a result, in the order of rows_of().

@@ -18,8 +18,8 @@ namespace buoyancy {
 
 // The caps on the work of a query.
 inline constexpr std::size_t kMaxPatches = 20'000;
-inline constexpr std::size_t kMaxCells = 2'048;   // of the surface, and of the volume, before a round
-inline constexpr std::size_t kMaxPlaces = 4'096;  // in the cells' grid, as well
+inline constexpr std::size_t kMaxCells = 2'048;    // of the surface, and of the volume, before a round
+inline constexpr std::size_t kMaxPlaces = 4'096;   // in the cells' grid, as well
 inline constexpr std::size_t kMaxGroups = 20'000;  // of a round; a result that is replaced may add some more
 // The number of components up to which these caps hold. Beyond, cells and groups are as many fewer: the
 // expansion of a cell, which a group may need, sums over all components.
