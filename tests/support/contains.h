@@ -7,9 +7,9 @@
 
 namespace buoyancy {
 
-inline testing::AssertionResult contains(const std::string& text, const std::string& part) {
+inline ::testing::AssertionResult contains(const std::string& text, const std::string& part) {
   const bool found = text.find(part) != std::string::npos;
-  return (found ? testing::AssertionSuccess() : testing::AssertionFailure())
+  return (found ? ::testing::AssertionSuccess() : ::testing::AssertionFailure())
          << "'" << part << "' is " << (found ? "" : "not ") << "in: " << text;
 }
 
