@@ -102,7 +102,8 @@
   const body_series = (name, column) => () => {
     const newest = tracks.times[tracks.times.length - 1];
     const body_track = tracks.bodies.get(view.selected);
-    return [{ name, times: tracks.times.map((time) => time - newest), values: body_track ? body_track[column] : [] }];
+    // Copies: a plot may be drawn again, in another size, after the track has grown.
+    return [{ name, times: tracks.times.map((time) => time - newest), values: body_track ? [...body_track[column]] : [] }];
   };
   const milliseconds = (value) => (value === null ? NaN : 1e3 * value);
   const plots = [
