@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "messages/wire_layout.h"
 #include "view/common/sea_json.h"
 
 namespace buoyancy::view {
@@ -132,50 +133,27 @@ json second_json(const SecondStats& second) {
           {"max", if_any(second.latency.max)}};
 }
 
-// The fields that matter to an observer; names as in service_status_t.
+// The fields of service_status_t under their names, those in 64 bits that identify something as text, and
+// sums. Conditions matter with subdivided bodies only (rest_json).
 json status_json(const ServiceStatus& status) {
   const ServiceCounters& counters = status.counters;
   json bodies;
   for (int i = 0; i < kBodyStatusCount; ++i) {
     bodies[to_string(static_cast<BodyStatus>(i))] = counters.bodies[static_cast<std::size_t>(i)];
   }
-  return {{"instance_id", std::to_string(status.instance_id)},
-          {"version", status.version},
-          {"scene", status.scene},
-          {"injected_faults", status.injected_faults},
-          {"uptime", status.uptime},
-          {"mode", status.mode == ServiceMode::kLockstep ? "lockstep" : "latest"},
-          {"threads", status.threads},
-          {"scene_bodies", status.scene_bodies},
-          {"reloads", status.reloads},
-          {"reloads_failed", status.reloads_failed},
-          {"send_failures", status.send_failures},
-          {"packets_dropped", status.packets_dropped},
-          {"fragments_dropped", status.fragments_dropped},
-          {"requests", counters.requests},
-          {"computed", counters.computed},
-          {"retries", counters.retries},
-          {"conflicting_retries", counters.conflicting_retries},
-          {"stale", counters.stale},
-          {"superseded", counters.superseded},
-          {"sessions", counters.sessions},
-          {"sessions_evicted", counters.sessions_evicted},
-          {"rejected", counters.rejected()},
-          {"seas_received", counters.seas_received},
-          {"seas_rejected", counters.seas_rejected},
-          {"bodies", bodies},
-          {"quaternions_normalised", counters.quaternions_normalised},
-          {"bodies_dry", counters.bodies_dry},
-          {"bodies_wet", counters.bodies_wet},
-          {"bodies_crossing", counters.bodies_crossing},
-          {"bodies_unchanged", counters.bodies_unchanged},
-          {"bodies_work_capped", counters.bodies_work_capped},
-          {"bodies_sea_too_steep", counters.bodies_sea_too_steep},
-          {"bodies_below_bed", counters.bodies_below_bed},
-          {"wave_patches", counters.wave_patches},
-          {"hydrostatics", counters.hydrostatics},
-          {"latency", percentiles_json(status.latency)},
-          {"queue_wait", status.queue_wait}};
+  json fields = {{"instance_id", std::to_string(status.instance_id)},
+                 {"version", status.version},
+                 {"scene", status.scene},
+                 {"scene_fingerprint", std::to_string(status.scene_fingerprint)},
+                 {"injected_faults", status.injected_faults},
+                 {"mode", status.mode == ServiceMode::kLockstep ? "lockstep" : "latest"},
+                 {"rejected", counters.rejected()},
+                 {"bodies", bodies},
+                 {"latency", percentiles_json(status.latency)}};
+  visit_named_trailer(status, [&fields](const Field& field, const auto& value) {
+    if (!field.name.starts_with("conditions_")) fields.emplace(field.name, value);
+  });
+  return fields;
 }
 
 json counts_json(const BusMonitor& monitor) {

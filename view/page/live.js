@@ -252,7 +252,10 @@
       ['stale', status.stale], ['superseded', status.superseded], ['rejected', status.rejected], ['send failures', status.send_failures],
       ['seas received', status.seas_received], ['seas rejected', status.seas_rejected],
       ['conditions received', status.conditions_received], ['conditions rejected', status.conditions_rejected],  // only with subdivision
-      ['packets dropped', status.packets_dropped], ['fragments dropped', status.fragments_dropped],
+      ['packets dropped', status.packets_dropped], ['fragments dropped', status.fragments_dropped], ['incomplete messages evicted', status.partial_messages_evicted],
+      ['requests in several slices', status.requests_sliced], ['outputs too large to send', status.outputs_too_large],
+      ['bytes retained', status.retained_bytes], ['stored replies evicted', status.replies_evicted],
+      ['contradicting motions', status.motions_contradicting], ['quaternions in the order x, y, z, w', status.quaternions_xyzw],
       ['sessions', status.sessions], ['sessions evicted', status.sessions_evicted], ['reloads', status.reloads], ['reloads failed', status.reloads_failed],
     ]));
     tables.push(table_of('Bodies evaluated', ['', 'count'], [
