@@ -66,10 +66,20 @@ void warn_of_unit(const Body& body, BodyWarningList& list) {
                   "a mesh in another unit than metres, such as millimetres", std::move(hint)});
 }
 
+void warn_of_water(const Scene& scene, std::vector<Warning>& warnings) {
+  // Fresh to salt water in grams per cubic centimetre. Air at sea level, of airships, is above.
+  const double density = scene.water().density;
+  if (density < 0.9 || density > 1.15) return;
+  warnings.push_back({scene.name() + ": water.density", format_number(density, 6) + " kg/m^3",
+                      "about 1000 kg/m^3", "grams per cubic centimetre",
+                      "Give kg/m^3, such as 1025 for sea water"});
+}
+
 }  // namespace
 
 std::vector<Warning> mesh_warnings(const Scene& scene, const UpAxisCheck& up) {
   std::vector<Warning> warnings = up_axis_warnings(scene, up);
+  warn_of_water(scene, warnings);
   BodyWarningList units;
   for (const Body& body : scene.bodies()) {
     warn_of_size(body, units);

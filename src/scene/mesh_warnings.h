@@ -11,7 +11,8 @@ namespace buoyancy {
 
 // Returns up_axis_warnings() with this check, then warns about bodies larger than 1 km, and about those whose
 // density in [body.client], or whose mass over the volume of the mesh, is implausible, with the scale that
-// would make it plausible. A warning about equal bodies appears once.
+// would make it plausible, and about water whose density is likely in g/cm^3. A warning about equal bodies
+// appears once.
 std::vector<Warning> mesh_warnings(const Scene& scene, const UpAxisCheck& up = {});
 
 }  // namespace buoyancy

@@ -45,6 +45,21 @@ TEST(MeshWarnings, SayNothingOfWhatFloatsOrSinks) {
   EXPECT_TRUE(warnings_of("[600, 799, 0.1]", "density = 700").empty());
 }
 
+TEST(MeshWarnings, NoteWaterInGramsPerCubicCentimetre) {
+  const auto of_water = [](const std::string& density) {
+    return messages_of(
+        mesh_warnings(scene_of("[water]\ndensity = " + density +
+                               "\n[[body]]\nid = 1\nshape = { type = \"sphere\", radius = 1 }\n")));
+  };
+  EXPECT_THAT(
+      of_water("1.025"),
+      ElementsAre("test scene: water.density: 1.025 kg/m^3; expected about 1000 kg/m^3. Likely cause: grams "
+                  "per cubic centimetre. Give kg/m^3, such as 1025 for sea water."));
+  for (const std::string density : {"0.9", "1.15"}) EXPECT_EQ(of_water(density).size(), 1U) << density;
+  for (const std::string density : {"0", "0.89", "1.2", "1000"})
+    EXPECT_TRUE(of_water(density).empty()) << density;
+}
+
 TEST(MeshWarnings, ArePartOfThoseOfAScene) {
   const Scene scene = scene_of(
       "[[body]]\nid = 1\nshape = { type = \"box\", size = [500, 250, 250] }\n"
