@@ -117,7 +117,7 @@ int run(int argc, char** argv) {
     print_error(app, error);
     return exit_code;
   };
-  const Expected<HydrostaticsPlan> plan = plan_hydrostatics(app, options);
+  Expected<HydrostaticsPlan> plan = plan_hydrostatics(app, options);
   if (!plan) return fail(plan.error(), kUsageError);
   std::string three;
   if (!options.html.empty()) {
@@ -127,11 +127,14 @@ int run(int argc, char** argv) {
   }
   const Expected<LoadedBody> loaded = load_body(options, *plan);
   if (!loaded) return fail(loaded.error(), kUsageError);
+  if (const Expected<void> axes = plan_axes(options, loaded->axes, *plan); !axes) {
+    return fail(axes.error(), kUsageError);
+  }
+  plan->table.knows_mass = loaded->knows_mass;
   UpAxisCheck up;
   if (!options.mesh.empty()) up = {.up_B = plan->table.axes.up_B, .remedy = UpRemedy::kShipAxis};
   for (const Warning& warning : mesh_warnings(loaded->scene, up)) print_warning(app, warning);
-  const bool needs_mass = plan->command != HydrostaticsCommand::kTable;
-  if (needs_mass && loaded->assumed_mass) print_warning(app, *loaded->assumed_mass);
+  if (loaded->assumed_mass) print_warning(app, *loaded->assumed_mass);
 
   Expected<Output> output;
   switch (plan->command) {

@@ -88,8 +88,8 @@ int run(int argc, char** argv) {
   if (options.check) {
     const LargestMessages messages = largest_messages(*scene, channels);
     const std::optional<ReceiveBuffer> buffer = expected_receive_buffer(messages, options.lcm_url);
-    const std::string report = options.json ? check_report_json(*scene, messages, buffer)
-                                            : check_report_text(*scene, messages, buffer);
+    const std::string report = options.json ? check_report_json(*scene, messages, buffer, options.drafts)
+                                            : check_report_text(*scene, messages, buffer, options.drafts);
     return print_output(app, report) ? kSuccess : kFailure;
   }
   return serve(app, options, std::move(*scene), std::move(*poses), *reload);

@@ -60,6 +60,14 @@ void add_options(CLI::App& app, DaemonOptions& options) {
       ->type_name("FAULTS");
   app.add_flag("--check", options.check, "Print the report of the scene and its meshes, then exit");
   app.add_flag("--json", options.json, "Print the report as JSON")->needs("--check");
+  app.add_option(
+         "--draft", options.drafts,
+         "With --check: also report each body upright at these drafts, m over its lowest point; it needs "
+         "no [body.client]")
+      ->needs("--check")
+      ->delimiter(',')
+      ->check(number_in(0.0, 1e6, "m"))
+      ->option_text("T,...");
 }
 
 Expected<void> check_options(const DaemonOptions& options) {

@@ -25,6 +25,7 @@ struct DaemonOptions {
   std::optional<std::string> inject;  // faults, see parse_faults()
   bool check = false;                 // print the scene's report and exit
   bool json = false;                  // with check
+  std::vector<double> drafts;         // [m], with check
 };
 
 // Declares the options on app; parsing fills options, which must outlive app.

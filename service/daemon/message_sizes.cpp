@@ -93,9 +93,10 @@ std::optional<ReceiveBuffer> expected_receive_buffer(const LargestMessages& mess
 }
 
 std::string check_report_text(const Scene& scene, const LargestMessages& messages,
-                              const std::optional<ReceiveBuffer>& buffer) {
+                              const std::optional<ReceiveBuffer>& buffer, const std::vector<double>& drafts) {
   const std::vector<FlotationOfBody> flotation = scene_flotation(scene);
-  std::string text = scene_report_text(scene, {.motions = true, .flotation = &flotation}) + "\nmessages\n";
+  std::string text =
+      scene_report_text(scene, {.motions = true, .flotation = &flotation, .drafts = drafts}) + "\nmessages\n";
   text += to_text(messages.request) + to_text(messages.response);
   if (messages.hydrostatics) text += to_text(*messages.hydrostatics);
   if (messages.loads) text += to_text(*messages.loads);
@@ -110,9 +111,10 @@ std::string check_report_text(const Scene& scene, const LargestMessages& message
 }
 
 std::string check_report_json(const Scene& scene, const LargestMessages& messages,
-                              const std::optional<ReceiveBuffer>& buffer) {
+                              const std::optional<ReceiveBuffer>& buffer, const std::vector<double>& drafts) {
   const std::vector<FlotationOfBody> flotation = scene_flotation(scene);
-  Json report = Json::parse(scene_report_json(scene, {.motions = true, .flotation = &flotation}));
+  Json report =
+      Json::parse(scene_report_json(scene, {.motions = true, .flotation = &flotation, .drafts = drafts}));
   report["messages"] = {{"request", to_json(messages.request)},
                         {"response", to_json(messages.response)},
                         {"hydrostatics", to_json(messages.hydrostatics)},

@@ -41,13 +41,16 @@ std::vector<Warning> size_warnings(const LargestMessages& messages, const Receiv
 std::optional<ReceiveBuffer> expected_receive_buffer(const LargestMessages& messages,
                                                      const std::string& lcm_url);
 
-// The reports of scene_report.h with the messages and the warnings. buffer: nullopt for memq://.
+// The reports of scene_report.h with the messages and the warnings. buffer: nullopt for memq://. drafts: of
+// SceneReportOptions.
 std::string check_report_text(const Scene& scene, const LargestMessages& messages,
-                              const std::optional<ReceiveBuffer>& buffer);
+                              const std::optional<ReceiveBuffer>& buffer,
+                              const std::vector<double>& drafts = {});
 // In addition to scene_report_json(): "messages", an object with "request", "response", "hydrostatics" and
 // "loads" (each of these two is null if no body has that output), each with "bytes" and "packets";
 // "receive_buffer" [bytes], null for memq://; "warnings", an array of texts.
 std::string check_report_json(const Scene& scene, const LargestMessages& messages,
-                              const std::optional<ReceiveBuffer>& buffer);
+                              const std::optional<ReceiveBuffer>& buffer,
+                              const std::vector<double>& drafts = {});
 
 }  // namespace buoyancy::service

@@ -44,7 +44,8 @@ Expected<void> check_angles(const std::string& subject, const std::vector<double
   return {};
 }
 
-// Refuses options that the command does not use, and a table without --draft.
+// Refuses options that the command does not use, a table without --draft, and a mesh without the mass that
+// the command needs.
 Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand command) {
   struct Use {
     const char* option;
@@ -62,6 +63,11 @@ Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand co
                        std::string("the command ") + kCommands[static_cast<std::size_t>(use.command)].first,
                        "", ""});
   }
+  for (const char* option : {"--mass", "--center-of-mass"}) {
+    if (app.count("--mesh") == 0 || !needs_mass(command) || app.count(option) > 0) continue;
+    return make_error({"--mesh", std::string("no ") + option, "--mass and --center-of-mass of the body",
+                       "what floats has a mass", "For instance --mass 1000 --center-of-mass 0,0,0.5"});
+  }
   const bool has_trim = command == HydrostaticsCommand::kTable || app.count("--fixed-trim") > 0;
   if (app.count("--trim") > 0 && !has_trim) {
     return make_error({"--trim", "without --fixed-trim", "the command table, or gz with --fixed-trim",
@@ -71,22 +77,6 @@ Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand co
     return make_error(
         {"table", "no --draft", "--draft FROM:TO:STEP in metres", "", "For instance --draft 1:5:0.5"});
   }
-  return {};
-}
-
-Expected<void> plan_axes(const HydrostaticsOptions& options, HydrostaticsPlan& plan) {
-  const Expected<Vec3> forward_B = parse_axis("--forward", options.forward);
-  if (!forward_B) return tl::unexpected(forward_B.error());
-  const Expected<Vec3> up_B = parse_axis("--up", options.up);
-  if (!up_B) return tl::unexpected(up_B.error());
-  const Expected<ShipAxes> axes = make_ship_axes(*forward_B, *up_B);
-  if (!axes) return tl::unexpected(axes.error());
-  plan.table = {.axes = *axes,
-                .keel = options.keel,
-                .aft_perpendicular = options.aft_perpendicular,
-                .forward_perpendicular = options.forward_perpendicular};
-  plan.arms.axes = *axes;
-  plan.arms.keel = options.keel;
   return {};
 }
 
@@ -134,6 +124,29 @@ Expected<void> plan_points(const HydrostaticsOptions& options, HydrostaticsPlan&
 }
 
 }  // namespace
+
+bool needs_mass(HydrostaticsCommand command) {
+  return command != HydrostaticsCommand::kTable;
+}
+
+Expected<void> plan_axes(const HydrostaticsOptions& options, const ShipAxes& own, HydrostaticsPlan& plan) {
+  ShipAxes axes = own;
+  if (!options.up.empty()) {
+    const Expected<Vec3> up_B = parse_axis("--up", options.up);
+    if (!up_B) return tl::unexpected(up_B.error());
+    axes = axes_with_up(*up_B);
+  }
+  if (!options.forward.empty()) {
+    const Expected<Vec3> forward_B = parse_axis("--forward", options.forward);
+    if (!forward_B) return tl::unexpected(forward_B.error());
+    axes.forward_B = *forward_B;
+  }
+  const Expected<ShipAxes> checked = make_ship_axes(axes.forward_B, axes.up_B);
+  if (!checked) return tl::unexpected(checked.error());
+  plan.table.axes = *checked;
+  plan.arms.axes = *checked;
+  return {};
+}
 
 Expected<std::vector<double>> parse_range(const std::string& subject, const std::string& text) {
   constexpr double kMaxValues = 100'000.0;
@@ -206,12 +219,16 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
                                        "With --mesh: centre of mass in the frame of the (scaled) mesh, m")
                             ->needs(mesh)
                             ->option_text("X,Y,Z");
-  mesh->needs(mass)->needs(center);
+  mass->needs(center);
+  center->needs(mass);
   add_mesh_options(app, mesh, options);
   app.add_option("--forward", options.forward,
                  "The ship's forward axis in the frame of the mesh: x, --forward=-x, y ...")
-      ->option_text("AXIS [x]");
-  app.add_option("--up", options.up, "The ship's upward axis, likewise")->option_text("AXIS [z]");
+      ->option_text("AXIS [x, or y where up is along x]");
+  app.add_option("--up", options.up,
+                 "The ship's upward axis, likewise (default: that of the body or of the "
+                 "scene's world; with --mesh z)")
+      ->option_text("AXIS");
   app.add_option("--keel", options.keel,
                  "Height of the keel K in the frame of the mesh, m (default: its lowest point)")
       ->option_text("Z");
@@ -262,15 +279,20 @@ Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const Hydrosta
   if (const Expected<void> checked = check_command_options(app, plan.command); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (!options.mesh.empty()) {
+  if (!options.center_of_mass.empty()) {
     const Expected<Vec3> center = parse_point("--center-of-mass", options.center_of_mass);
     if (!center) return tl::unexpected(center.error());
     plan.center_of_mass_B = *center;
+  }
+  if (!options.mesh.empty()) {
     const Expected<Vec3> scale = parse_scale(options.scale);
     if (!scale) return tl::unexpected(scale.error());
     plan.placement.scale = *scale;
   }
-  if (const Expected<void> axes = plan_axes(options, plan); !axes) return tl::unexpected(axes.error());
+  plan.table = {.keel = options.keel,
+                .aft_perpendicular = options.aft_perpendicular,
+                .forward_perpendicular = options.forward_perpendicular};
+  plan.arms.keel = options.keel;
   if (const Expected<void> ranges = plan_ranges(options, plan); !ranges) {
     return tl::unexpected(ranges.error());
   }

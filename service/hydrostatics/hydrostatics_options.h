@@ -29,8 +29,8 @@ struct HydrostaticsOptions {
   double density = kSeawaterDensity;  // [kg/m^3], of the water
   double gravity = kStandardGravity;  // [m/s^2]
   OpenPolicy open = OpenPolicy::kRefuse;
-  std::string forward = "x";
-  std::string up = "z";
+  std::string forward;  // empty: see plan_axes()
+  std::string up;
   std::optional<double> keel;                   // [m]
   std::optional<double> aft_perpendicular;      // [m]
   std::optional<double> forward_perpendicular;  // [m]
@@ -64,8 +64,15 @@ struct HydrostaticsPlan {
   std::vector<double> heels;   // [rad]
 };
 
-// Errors: options that do not belong together, and texts that are no range, axis, scale or point.
+// Can the command do without the mass of the body?
+bool needs_mass(HydrostaticsCommand command);
+
+// All but the axes. Errors: options that do not belong together, and texts that are no range, scale or point.
 Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const HydrostaticsOptions& options);
+
+// Sets the axes of the plan. own: those of the body, for what --up and --forward do not say. Errors: texts
+// that are no axes, or axes that are not at right angles.
+Expected<void> plan_axes(const HydrostaticsOptions& options, const ShipAxes& own, HydrostaticsPlan& plan);
 
 // FROM:TO:STEP or one number: ascending, TO included where a step meets it. Errors: anything else, and more
 // than 100,000 values. subject: of the error.

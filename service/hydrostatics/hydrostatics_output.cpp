@@ -168,6 +168,9 @@ std::string table_text(const HydrostaticTable& table, const TableRows& rows) {
       "m.\n"
       "lcb and lcf from midship, positive forward; tcb to port; kb, km over K. Masses in tonnes.\n",
       table.keel(), table.midship(), table.length_between_perpendiculars());
+  if (!table.knows_mass()) {
+    text += "Without a mass and a centre of mass there is no MCT1cm and no RM1deg.\n";
+  }
   constexpr std::size_t kPerLine = 7;
   const std::span<const TableColumn> columns = table_columns();
   std::vector<std::vector<double>> values;

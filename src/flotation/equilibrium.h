@@ -73,12 +73,12 @@ struct Equilibrium {
 };
 
 struct EquilibriumOptions {
-  ShipAxes axes;
+  ShipAxes axes{};
   bool unstable = false;            // report the saddle points and maxima that are found, too
   std::size_t max_attitudes = 128;  // the lowest are kept
   // Called after each start of the search with the number of starts so far and an estimate of their total,
   // which grows while more attitudes are found; may be empty.
-  std::function<void(std::int64_t done, std::int64_t total)> progress;
+  std::function<void(std::int64_t done, std::int64_t total)> progress{};
 };
 
 struct Equilibria {

@@ -23,6 +23,7 @@ Expected<HydrostaticTable> HydrostaticTable::make(const FloatingBody& body, cons
                                                   const HydrostaticTableOptions& options) {
   HydrostaticTable table(body, water);
   table.axes_ = options.axes;
+  table.knows_mass_ = options.knows_mass;
   const ShipAxes& axes = options.axes;
   const auto end_along = [&](const Vec3& direction) {
     return lowest_along(body, direction) + direction.dot(body.center_B());
@@ -144,7 +145,7 @@ std::optional<HydrostaticRow> HydrostaticTable::row(double draft, double trim) c
   row.km_t = row.kb + row.bm_t * std::cos(trim);
   row.km_l = row.kb + row.bm_l * std::cos(trim);
   const LiquidSum liquids = liquid_sum(*body_, plane.up_B, FreeSurfaces::kYes);
-  const double kg = axes_.up_B.dot(total_center_of_mass_B(*body_, liquids)) - keel_;
+  const double kg = !knows_mass_ ? kNaN : axes_.up_B.dot(total_center_of_mass_B(*body_, liquids)) - keel_;
   // The virtual rise of the centre of mass by a free surface, times the displaced mass.
   const auto rise = [&](const Vec3& across) { return across.dot(liquids.free_surface * across); };
   row.mass_per_cm = 0.01 * water_.density * row.waterplane_area;

@@ -21,10 +21,12 @@
 namespace buoyancy {
 
 struct HydrostaticTableOptions {
-  ShipAxes axes;
-  std::optional<double> keel;  // [m], of K along up from B's origin; nullopt: the lowest vertex along up
+  ShipAxes axes{};
+  std::optional<double> keel{};  // [m], of K along up from B's origin; nullopt: the lowest vertex along up
   // [m], along forward from B's origin; nullopt: the ends of the meshes.
-  std::optional<double> aft_perpendicular, forward_perpendicular;
+  std::optional<double> aft_perpendicular{}, forward_perpendicular{};
+  // false: the mass of the body is any, and its centre unknown. MCT1cm and RM1deg, which need it, are NaN.
+  bool knows_mass = true;
 };
 
 // Form coefficients on one length L, with the beam B of the waterplane and the draft T at midship.
@@ -35,7 +37,7 @@ struct FormCoefficients {
   double waterplane = 0.0;  // Cwp = A / (L B)
 };
 
-// Quotients whose divisor is 0 are NaN.
+// Quotients whose divisor is 0 are NaN, and what depends on an unknown centre of mass.
 struct HydrostaticRow {
   double draft = 0.0;              // [m]
   double trim = 0.0;               // [rad]
@@ -78,6 +80,7 @@ class HydrostaticTable {
   double keel() const { return keel_; }                          // [m], along up from B's origin
   double midship() const { return midship_; }                    // [m], along forward from B's origin
   double length_between_perpendiculars() const { return lpp_; }  // [m]
+  bool knows_mass() const { return knows_mass_; }
 
  private:
   // An edge of the section at midship, with the hull to its left seen from forward: (port, up) in metres from
@@ -97,6 +100,7 @@ class HydrostaticTable {
   double keel_ = 0.0;
   double midship_ = 0.0;
   double lpp_ = 0.0;
+  bool knows_mass_ = true;
   double waterplane_tolerance_ = 0.0;  // [m^2], error bound of its area
   std::vector<SectionEdge> section_;
 };

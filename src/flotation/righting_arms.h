@@ -25,7 +25,7 @@
 namespace buoyancy {
 
 struct RightingArmOptions {
-  ShipAxes axes;
+  ShipAxes axes{};
   std::optional<double> fixed_trim;  // [rad]; nullopt: free
   std::optional<double> keel;  // [m], of K along up from B's origin; nullopt: the lowest vertex along up
   // Called after each heel of a curve with the number of heels that are done and of all; may be empty.

@@ -29,6 +29,18 @@ Expected<ShipAxes> make_ship_axes(const Vec3& forward_B, const Vec3& up_B) {
   return axes;
 }
 
+ShipAxes axes_with_up(const Vec3& up_B) {
+  return {.forward_B = up_B.x() == 0.0 ? Vec3::UnitX() : Vec3::UnitY(), .up_B = up_B};
+}
+
+Vec3 nearest_axis(const Vec3& direction) {
+  int nearest = 2;
+  for (const int i : {1, 0}) {
+    if (std::abs(direction[i]) > std::abs(direction[nearest])) nearest = i;
+  }
+  return std::copysign(1.0, direction[nearest]) * Vec3::Unit(nearest);
+}
+
 Vec3 up_at(const ShipAxes& axes, const HeelTrim& angles) {
   const double cos_trim = std::cos(angles.trim);
   return std::sin(angles.trim) * axes.forward_B + cos_trim * std::sin(angles.heel) * axes.port_B() +

@@ -25,6 +25,13 @@ struct ShipAxes {
 // Errors: a vector that is zero or not finite, and vectors that are not at right angles to within 1e-6.
 Expected<ShipAxes> make_ship_axes(const Vec3& forward_B, const Vec3& up_B);
 
+// The axes of a body whose own up is this axis of B: forward is x, or y where up lies along x. up_B: a unit
+// vector along x, y or z.
+ShipAxes axes_with_up(const Vec3& up_B);
+
+// The axis of coordinates, with its sign, that is nearest to a direction; of equally near ones the last.
+Vec3 nearest_axis(const Vec3& direction);
+
 struct HeelTrim {
   double heel = 0.0;  // [rad], positive to starboard
   double trim = 0.0;  // [rad], positive by the stern

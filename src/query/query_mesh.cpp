@@ -144,6 +144,7 @@ Expected<std::shared_ptr<const Body>> QueryMesh::body(Method method, double tole
                                                       &prepared_,
                                                       Solver(prepared_.mesh, method, tolerance),
                                                       Vec3::Zero(),
+                                                      {},
                                                       false,
                                                       false,
                                                       nullptr,

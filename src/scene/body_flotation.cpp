@@ -69,7 +69,7 @@ BodyFlotation flotation_of(const Body& body, const FloatingBody& floating, const
   if (reached.outcome == FlotationOutcome::kSinks || reached.outcome == FlotationOutcome::kNeutral) {
     return flotation;
   }
-  Equilibria all = find_equilibria(floating, water);
+  Equilibria all = find_equilibria(floating, water, {.axes = body.axes});
   flotation.outcome = all.outcome;
   flotation.attitudes = std::move(all.attitudes);
   flotation.is_truncated = all.is_truncated;
@@ -127,6 +127,7 @@ std::vector<FlotationOfBody> scene_flotation(const Scene& scene, std::size_t max
     if (!body.dynamics.given || !own) continue;
     BodyKey key = keys.floating(body, *own);
     append_direction(body.dynamics.orientation.normalized().conjugate() * scene.water().up_W, key);
+    append_direction(body.axes.up_B, key);
     auto found = known.find(key);
     if (found == known.end()) {
       const std::size_t more = std::max(body.prepared_mesh->mesh.surface.x.size(), kMinVertices);

@@ -40,4 +40,8 @@ Expected<FloatingBody> floating_body_of(const Body& body, const HydrostaticMesh&
   return FloatingBody::make(meshes, mass.mass, mass.center_of_mass_B, tanks_of(body, condition));
 }
 
+Expected<FloatingBody> floating_hull_of(const Body& body, const HydrostaticMesh& mesh) {
+  return floating_body_of(body, mesh, {.mass = 1.0});
+}
+
 }  // namespace buoyancy

@@ -20,4 +20,7 @@ std::vector<Tank> tanks_of(const Body& body, const BodyCondition* condition = nu
 Expected<FloatingBody> floating_body_of(const Body& body, const HydrostaticMesh& mesh,
                                         const RigidBodyMass& mass, const BodyCondition* condition = nullptr);
 
+// The same of a body whose mass does not matter, or varies: it has 1 kg at the origin.
+Expected<FloatingBody> floating_hull_of(const Body& body, const HydrostaticMesh& mesh);
+
 }  // namespace buoyancy

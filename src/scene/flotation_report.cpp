@@ -6,7 +6,10 @@
 #include <utility>
 
 #include "base/angles.h"
+#include "flotation/hydrostatic_table.h"
+#include "scene/floating_bodies.h"
 #include "scene/start_pose.h"
+#include "scene/up_axis.h"
 
 namespace buoyancy {
 namespace {
@@ -50,7 +53,7 @@ Facts flotation_facts(const BodyFlotation& flotation, const Body& body, const Wa
   if (count > 0) {
     facts.line("attitudes")
         .say(pluralize(static_cast<std::int64_t>(count), "stable attitude", "stable attitudes"))
-        .say("heel and trim 0 with the body's z axis up")
+        .say("heel and trim 0 with the body's {} axis up", axis_name(body.axes.up_B))
         .say_if(flotation.reached.has_value(), "; * is where it turns to from its orientation");
   }
   Json& attitudes = facts.list("attitudes");
@@ -77,6 +80,42 @@ void add_flotation(const FlotationOfBody& entry, const Body& body, const Water& 
     facts.add("flotation", nullptr);
   }
   if (entry.left_out) facts.line("attitudes").say("left out: the bodies before it have too many vertices");
+}
+
+namespace {
+
+Facts upright_facts(const HydrostaticRow& row, double length) {
+  Facts facts;
+  facts.line("").add("draft", row.draft, "draft {:4} m");
+  facts.add("volume", row.volume, "displaces {:4} m^3").add("mass", row.mass, "{:4} kg");
+  facts.add("kb", row.kb, "KB {:4} m").add("bm_t", row.bm_t, "BM {:4} m");
+  facts.add("bm_l", row.bm_l, "and lengthwise {:4} m");
+  facts.add("lcf", row.lcf).say("LCF {:4} m", without_noise(row.lcf, 1e-12 * length));
+  return facts;
+}
+
+}  // namespace
+
+void add_upright(const Body& body, const Water& water, const std::vector<double>& drafts,
+                 MeshesWithTrees& meshes, Facts& facts) {
+  const Expected<FloatingBody> hull = floating_hull_of(body, meshes.of(*body.prepared_mesh));
+  const auto table = hull.and_then([&](const FloatingBody& of) {
+    return HydrostaticTable::make(of, water, {.axes = body.axes, .knows_mass = false});
+  });
+  facts.line("upright").say("{} up; KB over the lowest point, LCF forward of the middle",
+                            axis_name(body.axes.up_B));
+  Json& rows = facts.list("upright");
+  for (const double draft : drafts) {
+    const std::optional<HydrostaticRow> row = table ? table->row(draft) : std::nullopt;
+    Facts one = row ? upright_facts(*row, body.prepared_mesh->mesh.diagonal) : Facts();
+    if (!row) {
+      one.line("").say("draft {:4} m", draft).say("no result: the edge of the open mesh is under water");
+      one.json() = {{"draft", draft},  {"volume", nullptr}, {"mass", nullptr}, {"kb", nullptr},
+                    {"bm_t", nullptr}, {"bm_l", nullptr},   {"lcf", nullptr}};
+    }
+    facts.heading(one.text());
+    rows.push_back(std::move(one.json()));
+  }
 }
 
 }  // namespace buoyancy

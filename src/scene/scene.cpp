@@ -312,10 +312,10 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
       ++scene.bodies_with_hydrodynamics_;
       hydrodynamics = find_or_add_model(*coefficients, body.reference_B, scene.hydrodynamic_models_);
     }
-    Body& added = scene.bodies_.emplace_back(
-        Body{body.id, body.name, &prepared, Solver(prepared.mesh, body.method, tolerance), body.reference_B,
-             body.hydrostatics, body.loads, hydrodynamics, given_center_of_mass(body.dynamics, prepared),
-             std::move(dynamics), nullptr, nullptr});
+    Body& added = scene.bodies_.emplace_back(Body{
+        body.id, body.name, &prepared, Solver(prepared.mesh, body.method, tolerance), body.reference_B,
+        axes_with_up(body.up_B.value_or(nearest_axis(scene.water_.up_W))), body.hydrostatics, body.loads,
+        hydrodynamics, given_center_of_mass(body.dynamics, prepared), std::move(dynamics), nullptr, nullptr});
     if (!mesh->parts.empty()) {
       scene.parts_.push_back(std::make_unique<std::vector<BodyPart>>(std::move(mesh->parts)));
       added.parts = scene.parts_.back().get();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "flotation/ship_axes.h"
 #include "hydrodynamics/hydrodynamic_load.h"
 #include "hydrostatics/solver.h"
 #include "scene/id_index.h"
@@ -39,6 +40,7 @@ struct Body {
   const PreparedMesh* prepared_mesh = nullptr;  // owned by the scene
   Solver solver;
   Vec3 reference_B = Vec3::Zero();  // torque reference point [m]
+  ShipAxes axes;                    // where its heel and trim are 0
   bool hydrostatics = false;        // requested; the mesh then has a moment tree
   bool loads = false;               // requested
   // nullptr without drag and added mass; owned by the scene, and shared by equal bodies. A body whose

@@ -16,6 +16,7 @@
 #include "scene/subdivision_toml.h"
 #include "scene/toml_nesting.h"
 #include "scene/toml_table.h"
+#include "scene/up_axis.h"
 
 namespace buoyancy {
 namespace {
@@ -156,6 +157,11 @@ void read_open_policy(TomlTable& table, OpenPolicy& open) {
   if (const auto chosen = table.choice("open", names)) open = kOpenPolicyNames[*chosen].second;
 }
 
+void read_up(TomlTable& table, std::optional<Vec3>& up_B) {
+  constexpr std::array<std::string_view, 6> kNames{"x", "-x", "y", "-y", "z", "-z"};
+  if (const auto chosen = table.choice("up", kNames)) up_B = axis_from_name(kNames[*chosen]);
+}
+
 // Every response holds wrenches, so that only the other outputs need a flag.
 void read_outputs(TomlTable& table, BodyDescription& body) {
   constexpr std::string_view kExpected = "[\"wrench\"], with \"hydrostatics\" and \"loads\" in it as needed";
@@ -204,6 +210,7 @@ BodyDescription read_body(const toml::table& toml, std::size_t number, const Wat
   table.read("tolerance", body.tolerance, NumberRange::from_zero_to(1.0));
   read_open_policy(table, body.open);
   table.read("reference_point", body.reference_B, "m");
+  read_up(table, body.up_B);
   read_outputs(table, body);
   const std::string body_name = "body " + std::to_string(body.id);
   parse_drag(table, body_name, context, body.drag);

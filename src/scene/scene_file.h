@@ -131,8 +131,9 @@ struct BodyDescription {
   std::optional<double> tolerance;
   OpenPolicy open = OpenPolicy::kRefuse;
   Vec3 reference_B = Vec3::Zero();  // torque reference point [m]
-  bool hydrostatics = false;        // requested by `outputs`, in addition to the wrench
-  bool loads = false;               // requested by `outputs`
+  std::optional<Vec3> up_B;   // the axis of B that is up where heel and trim are 0; default: the world's
+  bool hydrostatics = false;  // requested by `outputs`, in addition to the wrench
+  bool loads = false;         // requested by `outputs`
   std::optional<DragDescription> drag;
   std::optional<AddedMassDescription> added_mass;
   DynamicsSpec dynamics;        // section [body.client]

@@ -201,12 +201,14 @@ Facts scene_facts(const Scene& scene, const SceneReportOptions& options) {
   facts.add("simd_target", simd_target());
   const std::vector<MotionsOfBody> motions =
       options.motions ? scene_motions(scene) : std::vector<MotionsOfBody>{};
+  MeshesWithTrees meshes;
   facts.list("bodies");
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
     const Body& body = scene.bodies()[i];
     Facts one = body_facts(body, scene);
     if (options.motions) add_motions(motions[i], body, scene.water(), one);
     if (options.flotation != nullptr) add_flotation((*options.flotation)[i], body, scene.water(), one);
+    if (!options.drafts.empty()) add_upright(body, scene.water(), options.drafts, meshes, one);
     facts.heading("").include_in("bodies", std::move(one));
   }
   facts.list("meshes");

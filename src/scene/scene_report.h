@@ -18,6 +18,8 @@ struct SceneReportOptions {
   // The attitudes at which the scene's bodies float, from scene_flotation(); nullptr: they are not
   // reported.
   const std::vector<FlotationOfBody>* flotation = nullptr;
+  // [m], over the lowest point of each body along its up, at which to report the upright hull.
+  std::vector<double> drafts{};
 };
 
 // Returns lines for a terminal, with a final newline.
@@ -49,6 +51,10 @@ std::string scene_report_text(const Scene& scene, const SceneReportOptions& opti
 // (null: it reaches none) and "starts_unstable". An attitude has "reached" (the body turns to it from its
 // `orientation`), "position" and "quaternion_wxyz" (at the place and heading of [body.client]), "draft",
 // "heel" and "trim" [degrees], "metacentric_heights", "energy" [J] and "family", see equilibrium.h.
+//
+// With options.drafts every body has "upright": for each draft "draft" [m], "volume" [m^3] and "mass" [kg] of
+// the displaced water, "kb", "bm_t", "bm_l" and "lcf" [m], as in hydrostatic_table.h; null where there is no
+// result.
 //
 // A mesh's "source" has "polygons" only where the file has faces of four or more corners: their "count",
 // "non_planar", "largest_distance" [m] and "split_volume" [m^3], see PolygonSplit.

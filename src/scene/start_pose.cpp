@@ -26,7 +26,7 @@ ReachedEquilibrium reached_by(const Body& body, const FloatingBody& floating, co
   ReachedEquilibrium reached;
   reached.mass = floating.total_mass();
   reached.displaced = water.density * floating.volume();
-  reached.equilibrium = find_equilibrium_from(floating, water, body.dynamics.orientation);
+  reached.equilibrium = find_equilibrium_from(floating, water, body.dynamics.orientation, body.axes);
   if (reached.equilibrium) {
     reached.outcome = FlotationOutcome::kFloats;
   } else if (floating.is_open()) {
@@ -108,6 +108,7 @@ const ReachedEquilibrium* StartFinder::reached_from_orientation(const Body& body
   if (!own) return nullptr;
   BodyKey key = keys_.floating(body, *own);
   append_direction(body.dynamics.orientation.normalized().conjugate() * scene_->water().up_W, key);
+  append_direction(body.axes.up_B, key);
   const auto [found, is_new] = known_.try_emplace(std::move(key));
   if (is_new) {
     const Expected<FloatingBody> floating = floating_body_of(body, meshes_.of(*body.prepared_mesh), *own);

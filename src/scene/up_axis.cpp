@@ -20,13 +20,6 @@ Vec3 axis(std::size_t i) {
   return i < 3 ? unit : Vec3(-unit);
 }
 
-std::string direction_text(const Vec3& direction) {
-  for (std::size_t i = 0; i < kAxes.size(); ++i) {
-    if (direction.isApprox(axis(i), 1e-9)) return std::string(kAxes[i]);
-  }
-  return format_text("[{:4}]", direction);
-}
-
 std::string quaternion_text(const Eigen::Quaterniond& q) {
   const auto plain = [](double value) { return std::abs(value) < 1e-12 ? 0.0 : value; };
   return format_text("[{:12}, {:12}, {:12}, {:12}]", plain(q.w()), plain(q.x()), plain(q.y()), plain(q.z()));
@@ -34,8 +27,7 @@ std::string quaternion_text(const Eigen::Quaterniond& q) {
 
 // Says which argument to pass to a program. report: of a mesh whose file states its up axis.
 std::string remedy_text(const MeshReport& report, UpRemedy remedy) {
-  const std::string axis =
-      remedy == UpRemedy::kShipAxis ? direction_text(*report.up_B) : report.source.up_axis;
+  const std::string axis = remedy == UpRemedy::kShipAxis ? axis_name(*report.up_B) : report.source.up_axis;
   if (remedy == UpRemedy::kArgument) return "Pass up=\"" + axis + "\"";
   return (axis.starts_with('-') ? "Pass --up=" : "Pass --up ") + axis;
 }
@@ -47,6 +39,13 @@ std::optional<Vec3> axis_from_name(std::string_view name) {
   const auto found = std::ranges::find(kAxes, name);
   if (found == kAxes.end()) return std::nullopt;
   return axis(static_cast<std::size_t>(found - kAxes.begin()));
+}
+
+std::string axis_name(const Vec3& direction) {
+  for (std::size_t i = 0; i < kAxes.size(); ++i) {
+    if (direction.isApprox(axis(i), 1e-9)) return std::string(kAxes[i]);
+  }
+  return format_text("[{:4}]", direction);
 }
 
 Eigen::Quaterniond orientation_with_up(const Vec3& axis, const Vec3& scale, const Vec3& up_B) {
@@ -73,8 +72,8 @@ std::optional<Warning> up_axis_warning(const MeshReport& report, const Vec3& sca
   if (remedy != UpRemedy::kNone) hint.insert(0, remedy_text(report, remedy) + "; in a scene file, ");
   return Warning{"",
                  "mesh '" + report.name + "' has " + report.source.up_axis + " up in its file, which is " +
-                     direction_text(*report.up_B) + " of the body",
-                 direction_text(up_B) + " of the body, which is " +
+                     axis_name(*report.up_B) + " of the body",
+                 axis_name(up_B) + " of the body, which is " +
                      (is_of_ship ? "the ship's upward axis" : "up in the water"),
                  "coordinates are those of the file, turned by nothing but the mesh's orientation",
                  std::move(hint)};

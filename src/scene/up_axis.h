@@ -15,6 +15,9 @@ namespace buoyancy {
 // The unit vector of "x", "+x", "-y" and so on; nullopt for other names, such as "not stated".
 std::optional<Vec3> axis_from_name(std::string_view name);
 
+// The name of an axis of coordinates, "-y" for instance; the components of another direction.
+std::string axis_name(const Vec3& direction);
+
 // Returns the orientation of a mesh that turns an axis of its file up. axis: of the file; up_B: in the frame
 // of the body; both unit length. scale: of the mesh's placement, whose negative factors turn axes round.
 Eigen::Quaterniond orientation_with_up(const Vec3& axis, const Vec3& scale, const Vec3& up_B = Vec3::UnitZ());

@@ -167,6 +167,64 @@ TEST(SceneFlotation, IsReportedAsJson) {
   EXPECT_FALSE(report["bodies"][2].contains("flotation"));
 }
 
+// A cuboid of 4 x 2 x 1 m that lies with its y axis up, in a world whose z axis points down, and a wedge of
+// triangular sections whose edge is its keel: no mass is needed.
+TEST(SceneFlotation, ReportsUprightHullsAtDrafts) {
+  const TempDir directory;
+  const std::string wedge = directory.write("wedge.obj",
+                                            "v -3 0 0\nv 3 0 0\nv -3 1 2\nv 3 1 2\nv -3 -1 2\nv 3 -1 2\n"
+                                            "f 1 2 4 3\nf 2 1 5 6\nf 3 4 6 5\nf 1 3 5\nf 2 6 4\n");
+  const Scene scene = scene_of(
+      "[world]\nup = [0, 0, -1]\n[water]\ndensity = 1000\n"
+      "[[body]]\nid = 1\nup = \"y\"\nshape = { type = \"box\", size = [4, 2, 1] }\n"
+      "[[body]]\nid = 2\nup = \"z\"\nmesh = \"" +
+      wedge +
+      "\"\n"
+      "[[body]]\nid = 3\nshape = { type = \"box\", size = [4, 2, 1] }\n");
+  const Json report = parse_json(scene_report_json(scene, {.drafts = {0.5, 1.5}}));
+  const auto row = [&](std::size_t body, std::size_t i) { return report["bodies"][body]["upright"][i]; };
+  const auto expect = [](const Json& one, double volume, double kb, double bm_t, double bm_l) {
+    EXPECT_NEAR(one["volume"].get<double>(), volume, 1e-12);
+    EXPECT_NEAR(one["mass"].get<double>(), 1000.0 * volume, 1e-9);
+    EXPECT_NEAR(one["kb"].get<double>(), kb, 1e-12);
+    EXPECT_NEAR(one["bm_t"].get<double>(), bm_t, 1e-12);
+    EXPECT_NEAR(one["bm_l"].get<double>(), bm_l, 1e-11);
+    EXPECT_NEAR(one["lcf"].get<double>(), 0.0, 1e-12);
+  };
+  expect(row(0, 0), 2.0, 0.25, 4.0 * 1.0 / 12.0 / 2.0, 64.0 / 12.0 / 2.0);
+  expect(row(0, 1), 6.0, 0.75, 4.0 * 1.0 / 12.0 / 6.0, 64.0 / 12.0 / 6.0);
+  // At a draft T the section is a triangle of width and area T.
+  expect(row(1, 0), 6.0 * 0.125, 1.0 / 3.0, 6.0 * 0.125 / 12.0 / 0.75, 0.5 * 216.0 / 12.0 / 0.75);
+  expect(row(2, 0), 4.0, 0.25, 4.0 * 8.0 / 12.0 / 4.0, 2.0 * 64.0 / 12.0 / 4.0);
+  EXPECT_THAT(scene_report_text(scene, {.drafts = {0.5}}),
+              HasSubstr("  upright       -z up; KB over the lowest point, LCF forward of the middle\n"
+                        "                draft 0.5 m, displaces 4 m^3, 4000 kg, KB 0.25 m, BM 0.6667 m, and "
+                        "lengthwise 2.667 m, LCF 0 m\n"));
+  EXPECT_EQ(parse_json(scene_report_json(scene))["bodies"][0].count("upright"), 0U);
+}
+
+// Of the same hull with another axis up, heel and trim are about its own axes.
+TEST(SceneFlotation, HasHeelsAboutTheBodysOwnUpAxis) {
+  const auto heels = [](const std::string& world, const std::string& up, const std::string& z) {
+    const Scene scene = scene_of(world + "[[body]]\nid = 1\n" + up +
+                                 "shape = { type = \"box\", size = [4, 4, 0.5] }\n[body.client]\ndensity = "
+                                 "500\ncenter_of_mass = [0, 0, " +
+                                 z + "]\n");
+    const std::vector<FlotationOfBody> flotation = scene_flotation(scene);
+    const Json report = parse_json(scene_report_json(scene, {.flotation = &flotation}));
+    std::vector<double> found;
+    for (const Json& at : report["bodies"][0]["flotation"]["attitudes"]) {
+      found.push_back(std::abs(at["heel"].get<double>()));
+    }
+    return found;
+  };
+  using ::testing::DoubleNear;
+  EXPECT_THAT(heels("", "", "-0.1"), ElementsAre(DoubleNear(0.0, 1e-6), DoubleNear(180.0, 1e-6)));
+  EXPECT_THAT(heels("[world]\nup = [0, 0, -1]\n", "", "0.1"),
+              ElementsAre(DoubleNear(0.0, 1e-6), DoubleNear(180.0, 1e-6)));
+  EXPECT_THAT(heels("", "up = \"y\"\n", "0"), ElementsAre(DoubleNear(90.0, 1e-6), DoubleNear(90.0, 1e-6)));
+}
+
 TEST(SubdivisionReport, ListsPartsCompartmentsAndTanks) {
   const Scene scene = scene_of(
       "[[body]]\nid = 1\n[[body.part]]\nname = \"left\"\nshape = { type = \"box\", size = [4, 1, 1] }\n"

@@ -205,7 +205,7 @@ TEST(SceneFile, SuggestsNearestKeyInEveryTable) {
       {scene_with_crate("metod = \"exact\"\n"), "nearest known key is 'method'"},
       {scene_with_crate("metod = \"exact\"\n"),
        "expected one of id, name, mesh, scale, shape, repair, mirror, close_holes, freeboard, method, "
-       "tolerance, open, reference_point, outputs, drag, added_mass, part, compartment, tank, client."},
+       "tolerance, open, reference_point, up, outputs, drag, added_mass, part, compartment, tank, client."},
       {scene_with_crate("[body.clinet]\n"), "nearest known key is 'client'"},
       {scene_with_crate("[body.client]\nmas = 3\n"), "pool.toml:5: body 7, [body.client]: unknown key 'mas'"},
       {scene_with_crate("[body.client]\nmas = 3\n"), "nearest known key is 'mass'"},

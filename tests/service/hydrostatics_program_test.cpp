@@ -41,6 +41,12 @@ shape = { type = "box", size = [80, 20, 12], segments = [2, 2, 2] }
 [body.client]
 )" + client + more);
   }
+  // 4 x 2 x 1 m, its corner in B's origin.
+  std::string box() const {
+    return dir_.write("box.obj",
+                      "v 0 0 0\nv 4 0 0\nv 4 2 0\nv 0 2 0\nv 0 0 1\nv 4 0 1\nv 4 2 1\nv 0 2 1\n"
+                      "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  }
   std::string ship() const { return scene("density = 512.5\ncenter_of_mass = [0, 0, 2]\n"); }
 
   TempDir dir_;
@@ -157,10 +163,7 @@ TEST_F(HydrostaticsProgram, PrintsEquilibriaAsJsonLowestEnergyFirst) {
 }
 
 TEST_F(HydrostaticsProgram, TakesAMeshWithAMass) {
-  const std::string mesh =
-      dir_.write("box.obj",
-                 "v 0 0 0\nv 4 0 0\nv 4 2 0\nv 0 2 0\nv 0 0 1\nv 4 0 1\nv 4 2 1\nv 0 2 1\n"
-                 "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const std::string mesh = box();
   const FinishedProcess result =
       run({"equilibrium", "--mesh", mesh, "--mass", "4100", "--center-of-mass", "2,1,0.3", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.standard_error;
@@ -301,6 +304,55 @@ TEST_F(HydrostaticsProgram, SaysThatAMassIsAssumed) {
 
 // A barge whose middle is beside the origin of its mesh, with its mass to port, whichever axes of the mesh
 // are its own: every result is that of closed forms.
+// A hull without a mass: all but MCT1cm and RM1deg, which need the centre of mass.
+TEST_F(HydrostaticsProgram, PrintsATableWithoutAMass) {
+  const std::string mesh = box();
+  const std::string bare = dir_.write(
+      "bare.toml",
+      "[[body]]\nid = 1\nmesh = \"box.obj\"\n[[body]]\nid = 2\nmesh = \"box.obj\"\n[body.client]\n");
+  for (const std::vector<std::string>& hull : {std::vector<std::string>{"--mesh", mesh},
+                                               {"--scene", bare, "--body", "1"},
+                                               {"--scene", bare, "--body", "2"}}) {
+    std::vector<std::string> arguments{"table", "--draft", "0.5", "--json"};
+    arguments.insert(arguments.end(), hull.begin(), hull.end());
+    const FinishedProcess result = run(arguments);
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    const nlohmann::json row = nlohmann::json::parse(result.standard_output).at("rows").at(0);
+    EXPECT_NEAR(row.at("displacement_volume").get<double>(), 4.0, 1e-12);
+    EXPECT_NEAR(row.at("kb").get<double>(), 0.25, 1e-12);
+    EXPECT_NEAR(row.at("bm_t").get<double>(), 2.0 / 3.0, 1e-12);
+    EXPECT_TRUE(row.at("mct1cm").is_null());
+    EXPECT_TRUE(row.at("rm1deg").is_null());
+    arguments[3] = "--keel=0";
+    EXPECT_TRUE(contains(run(arguments).standard_output, "no MCT1cm and no RM1deg"));
+  }
+  const FinishedProcess refused = run({"equilibrium", "--mesh", mesh});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(contains(refused.standard_error, "expected --mass and --center-of-mass of the body"));
+  EXPECT_EQ(run({"gz", "--scene", bare, "--body", "1"}).exit_code, 2);
+}
+
+// In a world whose z axis points down the ship's -z axis is up; `up` of the body and --up say otherwise.
+TEST_F(HydrostaticsProgram, TakesUpFromTheSceneAndTheBody) {
+  const auto heel = [this](const std::string& up, std::vector<std::string> options) {
+    options.insert(options.end(),
+                   {"equilibrium", "--json", "--scene",
+                    dir_.write("ned.toml", "[world]\nup = [0, 0, -1]\n[[body]]\nid = 1\n" + up +
+                                               "shape = { type = \"box\", size = [9, 6, 2] }\n"
+                                               "[body.client]\ndensity = 500\n"
+                                               "center_of_mass = [0, 0, 0.4]\n")});
+    const FinishedProcess result = run(options);
+    EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    return std::abs(
+        nlohmann::json::parse(result.standard_output).at("attitudes").at(0).at("heel").get<double>());
+  };
+  EXPECT_NEAR(heel("", {}), 0.0, 1e-6);
+  EXPECT_NEAR(heel("", {"--up", "z"}), 180.0, 1e-6);
+  EXPECT_NEAR(heel("up = \"z\"\n", {}), 180.0, 1e-6);
+  EXPECT_NEAR(heel("up = \"y\"\n", {}), 90.0, 1e-6);
+  EXPECT_NEAR(heel("up = \"y\"\n", {"--up=-z"}), 0.0, 1e-6);
+}
+
 TEST_F(HydrostaticsProgram, AgreesWithClosedFormsInAnyFrameOfTheMesh) {
   constexpr double kToPort = 0.15;  // [m], of the mass from the middle
   constexpr double kBm = 400.0 / 72.0;
