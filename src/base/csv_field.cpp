@@ -13,12 +13,13 @@ std::string_view trim(std::string_view text) {
 
 std::optional<std::string_view> CsvFields::next() {
   if (!rest_) return std::nullopt;
-  const std::size_t comma = rest_->find(',');
-  const std::string_view field = trim(rest_->substr(0, comma));
-  if (comma == std::string_view::npos) {
+  const std::size_t end = separator_ == ' ' ? rest_->find_first_of(" \t") : rest_->find(separator_);
+  const std::string_view field = trim(rest_->substr(0, end));
+  if (end == std::string_view::npos) {
     rest_.reset();
   } else {
-    rest_->remove_prefix(comma + 1);
+    rest_->remove_prefix(end + 1);
+    if (separator_ == ' ') rest_ = trim(*rest_);
   }
   return field;
 }

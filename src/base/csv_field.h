@@ -16,14 +16,17 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some prog
 // Removes spaces, tabs and carriage returns at both ends.
 std::string_view trim(std::string_view text);
 
-// Iterates over the comma-separated fields of a line, trimmed. Each line has at least one.
+// Iterates over the fields of a line, trimmed. Each line has at least one.
 class CsvFields {
  public:
-  explicit CsvFields(std::string_view line) : rest_(line) {}
+  // separator: ' ' stands for any number of spaces and tabs.
+  explicit CsvFields(std::string_view line, char separator = ',')
+      : rest_(separator == ' ' ? trim(line) : line), separator_(separator) {}
   std::optional<std::string_view> next();  // nullopt after the last field
 
  private:
   std::optional<std::string_view> rest_;
+  char separator_;
 };
 
 // Returns the parts of a text between separators, trimmed: at least one.

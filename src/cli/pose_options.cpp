@@ -40,17 +40,9 @@ Expected<ChannelOfBody> parse_channel_of_body(const std::string& option, const s
   if (const Expected<void> checked = check_channel(named.channel); !checked) {
     return tl::unexpected(checked.error());
   }
-  const std::string body = text.substr(equals + 1);
-  const std::vector<std::int32_t> ids = find_bodies(body, scene);
-  if (ids.empty()) {
-    return make_error({option + " " + text, "body '" + body + "'",
-                       "the id or the name of a body in " + scene.name(), "", ""});
-  }
-  if (ids.size() > 1) {
-    return make_error({option + " " + text, std::to_string(ids.size()) + " bodies are named '" + body + "'",
-                       "the name of one", "", "Use its id, such as " + std::to_string(ids.front())});
-  }
-  named.body_id = ids.front();
+  const Expected<std::int32_t> body = resolve_body(option + " " + text, text.substr(equals + 1), scene);
+  if (!body) return tl::unexpected(body.error());
+  named.body_id = *body;
   return named;
 }
 
@@ -97,6 +89,19 @@ void add_viewer_channel_options(CLI::App& app, PoseOptions& options) {
 void add_viewer_options(CLI::App& app, PoseOptions& options) {
   add_viewer_channel_options(app, options);
   add_velocity_options(app, options);
+}
+
+Expected<std::int32_t> resolve_body(const std::string& subject, const std::string& text, const Scene& scene) {
+  const std::vector<std::int32_t> ids = find_bodies(text, scene);
+  if (ids.empty()) {
+    return make_error(
+        {subject, "body '" + text + "'", "the id or the name of a body in " + scene.name(), "", ""});
+  }
+  if (ids.size() > 1) {
+    return make_error({subject, std::to_string(ids.size()) + " bodies are named '" + text + "'",
+                       "the name of one", "", "Use its id, such as " + std::to_string(ids.front())});
+  }
+  return ids.front();
 }
 
 Expected<PoseChannels> resolve_pose_channels(const PoseOptions& options, const Scene& scene,

@@ -2,6 +2,7 @@
 // poses and those that display them.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,10 @@ void add_options(CLI::App& app, PoseOptions& options);
 void add_viewer_options(CLI::App& app, PoseOptions& options);
 // Declares --pose and --force-torque only, for such programs if velocities do not matter to them.
 void add_viewer_channel_options(CLI::App& app, PoseOptions& options);
+
+// Returns the id of the body that text names by its id or its name. subject: the option. Errors: a body that
+// the scene lacks or has twice by that name.
+Expected<std::int32_t> resolve_body(const std::string& subject, const std::string& text, const Scene& scene);
 
 // Resolves the options against a scene. reserved: channels that carry other messages. Errors: not
 // CHANNEL=BODY, a body that the scene lacks or has twice by that name, a channel that LCM cannot carry, that

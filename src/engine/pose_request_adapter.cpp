@@ -6,17 +6,10 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Geometry>
-
 #include "messages/conversions.h"
 
 namespace buoyancy {
 namespace {
-
-std::array<double, 3> to_world(const std::array<double, 4>& q_WB, const std::array<double, 3>& v_B) {
-  const auto& [w, x, y, z] = q_WB;
-  return to_array(Eigen::Quaterniond(w, x, y, z).normalized() * to_vec3(v_B));
-}
 
 bool has_velocities(const BodyState& state) {
   const auto finite = [](double value) { return std::isfinite(value); };

@@ -7,10 +7,6 @@
 namespace buoyancy {
 namespace {
 
-constexpr std::uint64_t kPose = 0x2e16efb052b0105e;
-constexpr std::uint64_t kRigidTransform = 0xea9ffbf2acc5c5ae;
-constexpr std::uint64_t kSixAxisForceTorque = 0xf70790658aea38ec;
-
 // Encoded sizes [bytes], including the fingerprint.
 constexpr std::size_t kPoseSize = 8 + 8 + 16 * sizeof(double);
 constexpr std::size_t kRigidTransformSize = 8 + 8 + 7 * sizeof(double);
@@ -28,13 +24,13 @@ tl::expected<BotPose, DecodeError> decode_bot_pose(Bytes bytes) {
   if (bytes.size() < sizeof fingerprint) return tl::unexpected(DecodeError::kTruncated);
   BigEndianReader reader(bytes.data());
   reader(fingerprint);
-  if (fingerprint != kPose && fingerprint != kRigidTransform)
+  if (fingerprint != kBotPoseFingerprint && fingerprint != kBotRigidTransformFingerprint)
     return tl::unexpected(DecodeError::kFingerprint);
-  const std::size_t size = fingerprint == kPose ? kPoseSize : kRigidTransformSize;
+  const std::size_t size = fingerprint == kBotPoseFingerprint ? kPoseSize : kRigidTransformSize;
   if (bytes.size() < size) return tl::unexpected(DecodeError::kTruncated);
   if (bytes.size() > size) return tl::unexpected(DecodeError::kLength);
   BotPose pose;
-  if (fingerprint == kPose) {
+  if (fingerprint == kBotPoseFingerprint) {
     reader(pose.utime, pose.position, pose.velocity, pose.quaternion_wxyz, pose.rotation_rate);
   } else {
     reader(pose.utime, pose.position, pose.quaternion_wxyz);
@@ -49,7 +45,7 @@ tl::expected<BotForceTorque, DecodeError> decode_six_axis_force_torque(Bytes byt
   if (bytes.size() < sizeof fingerprint) return tl::unexpected(DecodeError::kTruncated);
   BigEndianReader reader(bytes.data());
   reader(fingerprint);
-  if (fingerprint != kSixAxisForceTorque) return tl::unexpected(DecodeError::kFingerprint);
+  if (fingerprint != kBotForceTorqueFingerprint) return tl::unexpected(DecodeError::kFingerprint);
   if (bytes.size() < kSixAxisForceTorqueSize) return tl::unexpected(DecodeError::kTruncated);
   if (bytes.size() > kSixAxisForceTorqueSize) return tl::unexpected(DecodeError::kLength);
   BotForceTorque message;
@@ -61,7 +57,7 @@ void encode_six_axis_force_torque(std::int64_t utime, const std::array<double, 3
                                   const std::array<double, 3>& torque, std::vector<std::uint8_t>& bytes) {
   bytes.resize(kSixAxisForceTorqueSize);
   BigEndianWriter writer(bytes.data());
-  writer(kSixAxisForceTorque, utime, force, torque);
+  writer(kBotForceTorqueFingerprint, utime, force, torque);
 }
 
 }  // namespace buoyancy

@@ -20,6 +20,10 @@
 
 namespace buoyancy {
 
+inline constexpr std::uint64_t kBotPoseFingerprint = 0x2e16efb052b0105e;
+inline constexpr std::uint64_t kBotRigidTransformFingerprint = 0xea9ffbf2acc5c5ae;
+inline constexpr std::uint64_t kBotForceTorqueFingerprint = 0xf70790658aea38ec;
+
 struct BotPose {
   std::int64_t utime = 0;                   // [us]
   std::array<double, 3> position{};         // [m]

@@ -1,8 +1,11 @@
-// Converts between the arrays of messages and the vectors of computations, and checks arrays for finiteness.
+// Converts between the arrays of messages and the vectors of computations, rotates them, and checks them for
+// finiteness.
 #pragma once
 
 #include <array>
 #include <cstddef>
+
+#include <Eigen/Geometry>
 
 #include "base/vec3.h"
 
@@ -22,6 +25,12 @@ inline Vec3 to_vec3(const std::array<double, 3>& values) {
 
 inline std::array<double, 3> to_array(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
+}
+
+// Rotates a vector from B to W by the quaternion's direction; its norm does not matter.
+inline std::array<double, 3> to_world(const std::array<double, 4>& q_WB, const std::array<double, 3>& v_B) {
+  const auto& [w, x, y, z] = q_WB;
+  return to_array(Eigen::Quaterniond(w, x, y, z).normalized() * to_vec3(v_B));
 }
 
 }  // namespace buoyancy

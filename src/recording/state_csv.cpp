@@ -18,16 +18,68 @@ constexpr std::size_t kMaxLineLength = 4096;
 
 }  // namespace
 
-Expected<StateCsvReader> StateCsvReader::open(const std::filesystem::path& path) {
+Expected<StateCsvReader> StateCsvReader::open(const std::filesystem::path& path,
+                                              const TableOptions& options) {
   Expected<FileWindow> file = FileWindow::open(path);
   if (!file) return tl::unexpected(file.error());
   StateCsvReader reader(std::move(*file));
   const std::optional<std::string_view> header = reader.read_line();
   if (!header) return reader;
   const Expected<std::size_t> columns = reader.parse_header(*header, path);
-  if (!columns) return tl::unexpected(columns.error());
-  reader.columns_ = *columns;
+  if (columns) reader.columns_ = *columns;
+  if (columns && options.format <= TableFormat::kCsv) return reader;
+  if (options.format == TableFormat::kCsv) return tl::unexpected(columns.error());
+  if (Expected<void> read = reader.read_table(header, options); !read) return tl::unexpected(read.error());
   return reader;
+}
+
+Expected<void> StateCsvReader::read_table(std::optional<std::string_view> text, const TableOptions& options) {
+  std::string header;
+  std::int64_t header_number = 0;
+  const auto where = [&] {
+    return file_.path().string() + ":" + std::to_string(header.empty() ? line_number_ : header_number);
+  };
+  const auto keep = [&](std::string_view line) {
+    header = line;
+    header_number = line_number_;
+  };
+  for (; text; text = read_line()) {
+    if (line_too_long_) {
+      return make_error({file_.path().string() + ":" + std::to_string(line_number_),
+                         "more than " + std::to_string(kMaxLineLength) + " characters",
+                         "poses or their header", "the file has many topics, or is no text",
+                         "Export the poses of one topic alone"});
+    }
+    std::string_view line = *text;
+    if (line_start_ == 0 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+    line = trim(line);
+    if (line.empty()) continue;
+    if (line.starts_with('#')) {
+      line = trim(line.substr(1));
+      if (PoseTable::names_columns(line)) keep(line);
+      continue;
+    }
+    double number = 0.0;
+    const std::size_t end = line.find_first_of(",; \t");
+    if (header.empty() && !parse_number(line.substr(0, end), number)) {
+      keep(line);
+      continue;
+    }
+    Expected<PoseTable> table = PoseTable::from_lines(where(), header, line, options);
+    if (!table) return tl::unexpected(table.error());
+    table_ = *std::move(table);
+    offset_ = line_start_;
+    --line_number_;
+    return {};
+  }
+  if (header.empty() || PoseTable::names_columns(header)) return {};
+  const Expected<PoseTable> refused = PoseTable::from_lines(where(), header, header, options);
+  return refused ? Expected<void>() : tl::unexpected(refused.error());
+}
+
+bool StateCsvReader::is_passed_over(std::string_view text) const {
+  text = trim(text);
+  return !line_too_long_ && (text.empty() || (table_ && text.starts_with('#')));
 }
 
 Expected<std::size_t> StateCsvReader::parse_header(std::string_view text, const std::filesystem::path& path) {
@@ -47,7 +99,7 @@ Expected<std::size_t> StateCsvReader::parse_header(std::string_view text, const 
 }
 
 bool StateCsvReader::states_velocities() const {
-  return columns_ != kPoseColumns;
+  return table_ ? table_->states_velocities() : columns_ != kPoseColumns;
 }
 
 bool StateCsvReader::reached(std::int64_t limit) const {
@@ -80,14 +132,14 @@ LogItem StateCsvReader::next(std::int64_t limit) {
   while (request_.bodies.size() < kMaxRowsPerRequest) {
     const std::optional<std::string_view> text = read_line();
     if (!text) break;
-    if (trim(*text).empty() && !line_too_long_) continue;
+    if (is_passed_over(*text)) continue;
     const tl::expected<Row, std::string> row = parse_row(*text);
     if (!row) {
       corrupt_line_ = {{describe_line() + ": " + row.error() + "; skipped"}, line_start_};
       run_utime_.reset();
       break;
     }
-    if (run_utime_ && row->utime != *run_utime_) {
+    if (run_utime_ && (table_ || row->utime != *run_utime_)) {
       pending_ = *row;
       break;
     }
@@ -158,6 +210,12 @@ tl::expected<StateCsvReader::Row, std::string> StateCsvReader::parse_row(std::st
   if (line_too_long_) return tl::unexpected("more than " + std::to_string(kMaxLineLength) + " characters");
   Row row;
   row.start = line_start_;
+  if (table_) {
+    row.state.body_id = body_id_;
+    if (const auto read = table_->read_row(text, row.utime, row.state); !read)
+      return tl::unexpected(read.error());
+    return row;
+  }
   CsvFields fields(text);
   std::size_t column = 0;
   std::string error;

@@ -24,6 +24,7 @@
 #include "messages/request.h"
 #include "recording/file_window.h"
 #include "recording/log_item.h"
+#include "recording/pose_table.h"
 
 namespace buoyancy {
 
@@ -32,11 +33,18 @@ inline constexpr std::int64_t kCsvSession = 0;
 
 class StateCsvReader {
  public:
-  // Errors: not readable, an invalid header. An empty file has no rows and is valid.
-  static Expected<StateCsvReader> open(const std::filesystem::path& path);
+  // Errors: not readable, an invalid header, those of PoseTable::from_lines(). An empty file has no rows and
+  // is valid.
+  static Expected<StateCsvReader> open(const std::filesystem::path& path, const TableOptions& options = {});
 
   // Returns whether the header names velocities; also true for an empty file, which has no rows without them.
   bool states_velocities() const;
+
+  // The layout of another program's poses; nullptr: the file has the columns above, or no rows.
+  const PoseTable* table() const { return table_ ? &*table_ : nullptr; }
+  // The body of such poses, 0 at first.
+  std::int32_t body() const { return body_id_; }
+  void set_body(std::int32_t id) { body_id_ = id; }
 
   // Once file().broken_off(), returns EndOfLog.
   LogItem next(std::int64_t limit = kNoLimit);
@@ -64,6 +72,8 @@ class StateCsvReader {
   explicit StateCsvReader(FileWindow file) : file_(std::move(file)) {}
   std::optional<std::string_view> read_line();  // without its newline; nullopt: end of the file
   void skip_to_newline();
+  Expected<void> read_table(std::optional<std::string_view> text, const TableOptions& options);
+  bool is_passed_over(std::string_view text) const;  // a blank line or a comment
   Expected<std::size_t> parse_header(std::string_view text, const std::filesystem::path& path);
   tl::expected<Row, std::string> parse_row(std::string_view text) const;  // or the reason why it is invalid
   std::string describe_line() const;                                      // the line read last, for a report
@@ -75,6 +85,8 @@ class StateCsvReader {
   std::int64_t counted_from_ = 0;  // [bytes]
   bool line_too_long_ = false;
   std::size_t columns_ = 0;
+  std::optional<PoseTable> table_;
+  std::int32_t body_id_ = 0;                 // of the table's poses
   std::optional<std::int64_t> run_utime_;    // nullopt: the next row starts a run
   std::int64_t last_row_start_ = 0;          // of the run [bytes]
   std::optional<Row> pending_;               // read ahead: the first row of the next run

@@ -1,6 +1,7 @@
-// Fuzz target: bytes as a CSV file of recorded poses. Every line must be accounted for exactly once: as the
-// header, as blank, as a body of a request, or as reported; the rows written with 17 digits must be read as
-// the same rows; and two pieces of the file must hold the requests of the whole.
+// Fuzz target: bytes as a CSV file of recorded poses, and as the poses of other programs. Every line must be
+// accounted for exactly once: as the header, as blank, as a body of a request, or as reported; the rows
+// written with 17 digits must be read as the same rows; and two pieces of the file must hold the requests of
+// the whole.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -150,19 +151,41 @@ std::int64_t read_piece(StateCsvReader reader, std::int64_t limit, std::vector<s
   return reader.position();
 }
 
-void check_pieces(const std::string& path, std::int64_t cut) {
+void check_pieces(const std::string& path, std::int64_t cut, const TableOptions& options = {}) {
   std::vector<std::size_t> whole;
-  read_piece(*StateCsvReader::open(path), kNoLimit, whole);
+  read_piece(*StateCsvReader::open(path, options), kNoLimit, whole);
   std::vector<std::size_t> pieces;
-  const std::int64_t end = read_piece(*StateCsvReader::open(path), cut, pieces);
-  Expected<StateCsvReader> back = StateCsvReader::open(path);
+  const std::int64_t end = read_piece(*StateCsvReader::open(path, options), cut, pieces);
+  Expected<StateCsvReader> back = StateCsvReader::open(path, options);
   back->seek(cut);
   require(back->position() == end, "a piece begins where the one before ends");
   read_piece(*std::move(back), kNoLimit, pieces);
   require(pieces == whole, "two pieces hold the requests of the whole");
 }
 
+// Poses of other programs: each is a request of one body, and two pieces hold those of the whole.
+void check_other_formats(std::string_view text) {
+  const std::string path = path_of_file_with(text);
+  for (const TableFormat format :
+       {TableFormat::kGuess, TableFormat::kTum, TableFormat::kEuroc, TableFormat::kNav}) {
+    const TableOptions options{format, {}};
+    Expected<StateCsvReader> reader = StateCsvReader::open(path, options);
+    if (!reader) {
+      require(reader.error().message().find('\n') == std::string::npos, "an error is one line");
+      continue;
+    }
+    if (reader->table() == nullptr) continue;
+    std::vector<std::size_t> sizes;
+    require(read_piece(*std::move(reader), kNoLimit, sizes) == static_cast<std::int64_t>(text.size()),
+            "reading ends at the end of the file");
+    require(std::ranges::all_of(sizes, [](std::size_t size) { return size == request_size(1); }),
+            "each pose is a request");
+    check_pieces(path, static_cast<std::int64_t>(text.size() / 2), options);
+  }
+}
+
 void check(std::string_view text) {
+  check_other_formats(text);
   Expected<StateCsvReader> reader = StateCsvReader::open(path_of_file_with(text));
   if (!reader) {
     require(reader.error().message().find('\n') == std::string::npos, "an error is one line");
