@@ -11,6 +11,7 @@
 #include "recording/file_window.h"
 #include "scene/mesh_warnings.h"
 #include "scene/scene.h"
+#include "service/replay/channel_list.h"
 #include "service/replay/earlier_conditions.h"
 #include "service/replay/part_output.h"
 #include "service/replay/replay.h"
@@ -54,11 +55,13 @@ class InputErrors {
 
 void warn_of_unseen(const CLI::App& app, const ReplayOptions& options,
                     const std::vector<std::string>& channels) {
-  if (options.input.extension() != ".lcmlog") return;
+  if (channels.empty()) return;
+  const Expected<ChannelList> list = list_channels(options.input, FileFormat::kLcmLog, {});
+  const std::string held = list ? ". The log has " + list_line(*list) : "";
   for (const std::string& channel : channels) {
     print_error(app, Warning{"warning: channel " + channel, "no events in " + options.input.string(),
                              "requests or poses", "the channel has another name in the log",
-                             "See --states-channel and --pose"});
+                             "See --states-channel and --pose" + held});
   }
 }
 
@@ -107,7 +110,8 @@ int run_replay(const CLI::App& app, const ReplayOptions& options, const ReplayTa
   if (!stopped) warn_of_missing_velocities(app, options, task);
   for (const std::string& doubt : summary->doubts) print_error(app, "warning: " + doubt);
   // A channel without events in one part may have some in another: the join warns if there are none in any.
-  if (!stopped && part == nullptr) warn_of_unseen(app, options, task.channels.unseen_channels());
+  if (!stopped && part == nullptr && task.input.format() == FileFormat::kLcmLog)
+    warn_of_unseen(app, options, task.channels.unseen_channels());
   const std::string text =
       options.json ? summary_json(*summary, task.comparison) : summary_text(*summary, task.comparison);
   if (stopped && !stdout_is_writable()) return kFailure;
@@ -116,6 +120,30 @@ int run_replay(const CLI::App& app, const ReplayOptions& options, const ReplayTa
   if (part != nullptr) return stopped ? kFailure : kSuccess;
   const bool agrees = task.comparison == nullptr || task.comparison->agrees();
   return summary->complete() && agrees ? kSuccess : kFailure;
+}
+
+int run_list(const CLI::App& app, const ReplayOptions& options) {
+  if (const Expected<void> checked = check_list(app, options); !checked) {
+    print_error(app, checked.error());
+    return kUsageError;
+  }
+  const Expected<ChannelList> list =
+      list_channels(options.input, input_format(options), table_options(options));
+  if (!list) {
+    print_error(app, list.error());
+    return kUsageError;
+  }
+  if (!print_output(app, options.json ? list_json(*list) : list_text(*list))) return kFailure;
+  return list->corrupt_sections == 0 ? kSuccess : kFailure;
+}
+
+// Says which format was found in a file of another program's poses, and whose poses they are.
+void print_table(const CLI::App& app, const ReplayOptions& options, const Scene& scene,
+                 const ReplayInput& input) {
+  if (!input.body()) return;
+  const Body& body = *scene.find(*input.body());
+  print_error(app, options.input.string() + ": " + input.table()->description() + "; poses of body '" +
+                       body.name + "' (id " + std::to_string(body.id) + ")");
 }
 
 int run_join(const CLI::App& app, const ReplayOptions& options) {
@@ -168,6 +196,7 @@ int run(int argc, char** argv) {
   ReplayOptions options;
   add_options(app, options);
   if (const auto exit_code = parse_command_line(app, argc, argv)) return *exit_code;
+  if (options.list) return run_list(app, options);
   if (options.join > 0) return run_join(app, options);
   const auto fail = [&app](const Error& error, ExitCode exit_code) {
     print_error(app, error);
@@ -184,13 +213,18 @@ int run(int argc, char** argv) {
   if (!routes) return fail(routes.error(), kUsageError);
   ReplayChannels& channels = routes->channels;
   PoseRequestAdapter poses(std::move(routes->poses), kFirstPoseSession);
-  Expected<ReplayInput> input =
-      ReplayInput::open(options.input, plan->input_format,
-                        [&channels](std::string_view channel) { return channels.role_of(channel).any(); });
+  Expected<ReplayInput> input = ReplayInput::open(
+      options.input, plan->input_format,
+      [&channels](std::string_view channel) { return channels.role_of(channel).any(); },
+      table_options(options));
   if (!input) return fail(input.error(), kUsageError);
+  if (const Expected<void> chosen = choose_body(options, *scene, *input); !chosen) {
+    return fail(chosen.error(), kUsageError);
+  }
   if (const Expected<void> checked = check_velocity_columns(*input, options, *scene); !checked) {
     return fail(checked.error(), kUsageError);
   }
+  print_table(app, options, *scene, *input);
   const OutputLayout layout{plan->output_format, options.wrenches_channel, options.hydrostatics_channel,
                             options.loads_channel, !options.loads.empty()};
   std::optional<ReplayComparison> comparison;

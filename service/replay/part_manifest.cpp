@@ -126,6 +126,8 @@ Expected<ReplayFacts> replay_facts(const ReplayOptions& options, const Scene& sc
   facts.emplace_back("scene, meshes and waves", std::to_string(scene_fingerprint(scene)));
   facts.emplace_back("formats",
                      options.input.extension().string() + " to " + options.output.extension().string());
+  facts.emplace_back("--format, --time-unit and --body",
+                     options.format + " " + options.time_unit + " " + options.body);
   facts.emplace_back("size of INPUT", std::to_string(input_size));
   facts.emplace_back("--states-channel", options.states_channel);
   facts.emplace_back(kWrenchesChannelFact, options.wrenches_channel);

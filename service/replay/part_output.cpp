@@ -61,7 +61,7 @@ Expected<void> PartOutput::complete(const ReplayTask& task, const ReplaySummary&
   manifest_.numbered_requests = numbered_requests(task, summary);
   manifest_.summary = summary;
   manifest_.input_errors = std::move(input_errors);
-  manifest_.unseen_channels = task.channels.unseen_channels();
+  if (task.input.format() == FileFormat::kLcmLog) manifest_.unseen_channels = task.channels.unseen_channels();
   remove_manifest(path_);  // an older one would not belong to the new file
   if (Expected<void> committed = staged_.commit(); !committed) return committed;
   return write_manifest(path_, manifest_);

@@ -13,9 +13,9 @@ constexpr std::size_t kMaxHashLag = 65'536;  // [bytes]
 }  // namespace
 
 Expected<ReplayInput> ReplayInput::open(const std::filesystem::path& path, FileFormat format,
-                                        ChannelFilter wanted) {
+                                        ChannelFilter wanted, const TableOptions& table) {
   if (format == FileFormat::kCsv) {
-    Expected<StateCsvReader> reader = StateCsvReader::open(path);
+    Expected<StateCsvReader> reader = StateCsvReader::open(path, table);
     if (!reader) return tl::unexpected(reader.error());
     return ReplayInput(std::move(*reader));
   }

@@ -1,5 +1,6 @@
-// The input of a replay, or of a part of it: recorded messages from an LCM log, or requests from CSV, block
-// by block (replay_part.h), and a description of each section that could not be read.
+// The input of a replay, or of a part of it: recorded messages from an LCM log, or requests from a table (CSV
+// or the poses of another program), block by block (replay_part.h), and a description of each section that
+// could not be read.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +24,10 @@ enum class FileFormat { kCsv, kLcmLog };
 
 class ReplayInput {
  public:
-  // wanted: the channels to read from a log. Errors: not readable, an invalid CSV header.
+  // wanted: the channels to read from a log. table: the format of what is no log. Errors: not readable, those
+  // of StateCsvReader::open().
   static Expected<ReplayInput> open(const std::filesystem::path& path, FileFormat format,
-                                    ChannelFilter wanted);
+                                    ChannelFilter wanted, const TableOptions& table = {});
 
   // Restricts the input to a part and hashes what it reads from then on; to be called before next(). start:
   // where the part before ended, if that is known; otherwise the events before the part are searched for it.
@@ -45,10 +47,22 @@ class ReplayInput {
   FileFormat format() const {
     return std::holds_alternative<StateCsvReader>(reader_) ? FileFormat::kCsv : FileFormat::kLcmLog;
   }
-  // Can its requests have velocities? False only for a CSV file without their columns.
+  // Can its requests have velocities? False only for a table without their columns.
   bool states_velocities() const {
     const auto* csv = std::get_if<StateCsvReader>(&reader_);
     return csv == nullptr || csv->states_velocities();
+  }
+  // The layout and the body of another program's poses; nullptr and nullopt: the input has none.
+  const PoseTable* table() const {
+    const auto* csv = std::get_if<StateCsvReader>(&reader_);
+    return csv == nullptr ? nullptr : csv->table();
+  }
+  std::optional<std::int32_t> body() const {
+    if (table() == nullptr) return std::nullopt;
+    return std::get<StateCsvReader>(reader_).body();
+  }
+  void set_body(std::int32_t id) {
+    if (auto* csv = std::get_if<StateCsvReader>(&reader_)) csv->set_body(id);
   }
   bool stopped() const { return file().stopped(); }  // by stop_when()
   const std::optional<Error>& read_error() const { return file().read_error(); }

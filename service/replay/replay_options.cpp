@@ -39,11 +39,22 @@ Expected<FileFormat> output_format(const std::filesystem::path& path, FileFormat
   return format_by_extension(path);
 }
 
+bool begins_with_event(const std::filesystem::path& path) {
+  Expected<FileWindow> file = FileWindow::open(path);
+  return file && event_layout(file->read_at(0, kEventHeaderSize)).has_value();
+}
+
 Expected<void> check_formats(const ReplayOptions& options, const ReplayPlan& plan) {
   const bool from_log = plan.input_format == FileFormat::kLcmLog;
   const bool to_log = plan.output_format == FileFormat::kLcmLog;
   if (!options.poses.poses.empty() && !from_log) {
-    return make_error({"--pose", options.input.string(), "an .lcmlog as INPUT", "CSV has no channels", ""});
+    return make_error({"--pose", options.input.string(), "an .lcmlog as INPUT", "CSV has no channels",
+                       "For a file of poses use --body"});
+  }
+  if (from_log && !(options.body.empty() && options.time_unit.empty())) {
+    return make_error({options.body.empty() ? "--time-unit" : "--body", options.input.string(),
+                       "poses as text (TUM, EuRoC, nav_msgs) as INPUT", "the messages of a log state both",
+                       "For a channel of poses use --pose CHANNEL=BODY"});
   }
   if (!options.poses.force_torques.empty() && !to_log) {
     return make_error({"--force-torque", options.output.string(), "an .lcmlog as OUTPUT", "", ""});
@@ -122,7 +133,8 @@ void add_options(CLI::App& app, ReplayOptions& options) {
   app.description(
       "Compute the buoyant force and torque for recorded body poses, exactly as buoyancyd does.\n"
       "CSV input: utime,body_id,px,py,pz,qw,qx,qy,qz[,vx,vy,vz,wx,wy,wz]; rows with equal utime are one\n"
-      "request; writes one row per input row. LCM log input: requests on one channel, poses of single\n"
+      "request; writes one row per input row. Poses of one body as TUM, EuRoC or nav_msgs text are told by\n"
+      "their columns (--format, --body). LCM log input: requests on one channel, poses of single\n"
       "bodies on others (--pose); responses keep the timestamps of their requests; --copy copies other\n"
       "channels. Several machines can share a replay (--part, --join).\n" +
       exit_status_help(
@@ -199,17 +211,59 @@ void add_options(CLI::App& app, ReplayOptions& options) {
          "Join the N parts that were computed from INPUT to OUTPUT, if they are complete and belong together")
       ->check(CLI::Range(1, kMaxParts))
       ->option_text("N");
-  app.add_flag("--json", options.json, "Print the summary as JSON");
-  app.add_option("INPUT", options.input, ".csv or .lcmlog file")->required();
-  app.add_option("OUTPUT", options.output, ".csv or .lcmlog file; overwritten")->required();
+  app.add_option(
+         "--format", options.format,
+         "Format of INPUT: lcm (a log), csv (ours), tum, euroc (ground truth) or nav (exports of nav_msgs "
+         "and geometry_msgs); auto tells it by the extension and the columns")
+      ->check(CLI::IsMember({"auto", "lcm", "csv", "tum", "euroc", "nav"}))
+      ->option_text("FORMAT [auto]");
+  app.add_option(
+         "--time-unit", options.time_unit,
+         "Unit of the times in TUM, EuRoC or nav_msgs text: s, ms, us or ns (default: that of the header, "
+         "else guessed by their size)")
+      ->check(CLI::IsMember({"s", "ms", "us", "ns"}))
+      ->option_text("UNIT");
+  app.add_option("--body", options.body,
+                 "Body of the poses in TUM, EuRoC or nav_msgs text: its id or name (default: the only one)")
+      ->option_text("BODY");
+  app.add_option("INPUT", options.input, ".lcmlog or .csv file, or poses as text (--format)")->required();
+  CLI::Option* output =
+      app.add_option("OUTPUT", options.output, ".csv or .lcmlog file; overwritten")->required();
+  app.add_flag_callback(
+      "--list",
+      [&options, from, output] {
+        options.list = true;
+        from->require_option(0);
+        output->required(false);
+      },
+      "Only list what INPUT holds: channels, types, numbers of messages and times");
+  app.add_flag("--json", options.json, "Print the summary, or the list, as JSON");
+}
+
+FileFormat input_format(const ReplayOptions& options) {
+  if (options.format != "auto") return options.format == "lcm" ? FileFormat::kLcmLog : FileFormat::kCsv;
+  const Expected<FileFormat> named = format_by_extension(options.input);
+  if (named) return *named;
+  return begins_with_event(options.input) ? FileFormat::kLcmLog : FileFormat::kCsv;
+}
+
+TableOptions table_options(const ReplayOptions& options) {
+  TableOptions table{.format = TableFormat::kGuess, .time_unit = {}};
+  if (options.format == "csv") table.format = TableFormat::kCsv;
+  if (options.format == "tum") table.format = TableFormat::kTum;
+  if (options.format == "euroc") table.format = TableFormat::kEuroc;
+  if (options.format == "nav") table.format = TableFormat::kNav;
+  if (options.time_unit == "s") table.time_unit = TimeUnit::kSeconds;
+  if (options.time_unit == "ms") table.time_unit = TimeUnit::kMilliseconds;
+  if (options.time_unit == "us") table.time_unit = TimeUnit::kMicroseconds;
+  if (options.time_unit == "ns") table.time_unit = TimeUnit::kNanoseconds;
+  return table;
 }
 
 Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
   ReplayPlan plan;
-  const Expected<FileFormat> input_format = format_by_extension(options.input);
-  if (!input_format) return tl::unexpected(input_format.error());
-  plan.input_format = *input_format;
-  const Expected<FileFormat> written_format = output_format(options.output, *input_format);
+  plan.input_format = input_format(options);
+  const Expected<FileFormat> written_format = output_format(options.output, plan.input_format);
   if (!written_format) return tl::unexpected(written_format.error());
   plan.output_format = *written_format;
   if (const Expected<void> planned = plan_part(options, plan); !planned)
@@ -246,21 +300,47 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
   return plan;
 }
 
-Expected<void> check_join(const CLI::App& app, const ReplayOptions& options) {
+namespace {
+
+// Checks that no options but these and positionals are given.
+Expected<void> check_only(const CLI::App& app, const std::vector<std::string>& allowed,
+                          const Error& otherwise) {
   std::vector<const CLI::Option*> given = app.get_options();
   const CLI::App* scene_group = app.get_option_group("scene");
   const std::vector<const CLI::Option*> scene = scene_group->get_options();
   given.insert(given.end(), scene.begin(), scene.end());
   for (const CLI::Option* option : given) {
     const std::string name = option->get_name();
-    if (option->count() == 0 || name == "--join" || name == "--json" || option->get_positional()) continue;
-    return make_error({"--join", "together with " + name, "only INPUT, OUTPUT and --json",
-                       "the parts are joined as they were computed", ""});
+    if (option->count() == 0 || std::ranges::find(allowed, name) != allowed.end() || option->get_positional())
+      continue;
+    Error error = otherwise;
+    error.actual = "together with " + name;
+    return make_error(std::move(error));
   }
-  for (const std::filesystem::path& path : {options.input, options.output}) {
-    if (const Expected<FileFormat> format = format_by_extension(path); !format) {
-      return tl::unexpected(format.error());
-    }
+  return {};
+}
+
+}  // namespace
+
+Expected<void> check_list(const CLI::App& app, const ReplayOptions& options) {
+  if (!options.output.empty()) {
+    return make_error(
+        {"--list", "OUTPUT " + options.output.string(), "only INPUT", "nothing is computed", ""});
+  }
+  return check_only(
+      app, {"--list", "--json", "--format", "--time-unit"},
+      {"--list", "", "only INPUT, --format, --time-unit and --json", "nothing is computed", ""});
+}
+
+Expected<void> check_join(const CLI::App& app, const ReplayOptions& options) {
+  if (Expected<void> checked = check_only(
+          app, {"--join", "--json"},
+          {"--join", "", "only INPUT, OUTPUT and --json", "the parts are joined as they were computed", ""});
+      !checked) {
+    return checked;
+  }
+  if (const Expected<FileFormat> format = format_by_extension(options.output); !format) {
+    return tl::unexpected(format.error());
   }
   if (Expected<void> checked = check_regular_files("--join", options.input, options.output); !checked) {
     return checked;
@@ -274,8 +354,7 @@ namespace {
 Expected<void> check_sea_input(const ReplayOptions& options, const Scene& scene) {
   if (!scene.receives_sea()) return {};
   const std::string subject = scene.name() + ": waves = \"received\"";
-  const Expected<FileFormat> format = format_by_extension(options.input);
-  if (format && *format == FileFormat::kCsv) {
+  if (input_format(options) == FileFormat::kCsv) {
     return make_error({subject, "with " + options.input.string(),
                        "an LCM log, which holds the sea's messages", "a CSV file has poses only",
                        "Describe the sea in the scene"});
@@ -329,15 +408,39 @@ Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& sc
   return ReplayRoutes{*std::move(poses), *std::move(channels)};
 }
 
+Expected<void> choose_body(const ReplayOptions& options, const Scene& scene, ReplayInput& input) {
+  if (input.table() == nullptr) {
+    if (options.body.empty() && options.time_unit.empty()) return {};
+    return make_error({options.body.empty() ? "--time-unit" : "--body", options.input.string(),
+                       "poses as text (TUM, EuRoC, nav_msgs) as INPUT", "rows of our CSV state both", ""});
+  }
+  if (options.body.empty() && scene.bodies().size() > 1) {
+    return make_error(
+        {options.input.string(),
+         "poses of one body for a scene with " + std::to_string(scene.bodies().size()) + " bodies",
+         "--body with the id or the name of one", "", ""});
+  }
+  Expected<std::int32_t> body =
+      options.body.empty() ? scene.bodies().front().id : resolve_body("--body", options.body, scene);
+  if (!body) return tl::unexpected(body.error());
+  input.set_body(*body);
+  return {};
+}
+
 Expected<void> check_velocity_columns(const ReplayInput& input, const ReplayOptions& options,
                                       const Scene& scene) {
   if (input.states_velocities()) return {};
-  const auto needs =
-      std::ranges::find_if(scene.bodies(), [](const Body& body) { return body.hydrodynamics != nullptr; });
+  const bool has_table = input.table() != nullptr;
+  const auto needs = std::ranges::find_if(scene.bodies(), [&](const Body& body) {
+    return body.hydrodynamics != nullptr && (!has_table || body.id == input.body());
+  });
   if (needs == scene.bodies().end()) return {};
-  return make_error({options.input.string() + ":1", "a header without velocities",
-                     "the columns vx,vy,vz,wx,wy,wz after the pose, since body '" + needs->name + "' of " +
-                         scene.name() + " has drag or added mass, which depend on its velocities",
+  const std::string columns = has_table ? "columns of the linear and the angular velocity"
+                                        : "the columns vx,vy,vz,wx,wy,wz after the pose";
+  return make_error({options.input.string() + (has_table ? "" : ":1"),
+                     has_table ? input.table()->description() : "a header without velocities",
+                     columns + ", since body '" + needs->name + "' of " + scene.name() +
+                         " has drag or added mass, which depend on its velocities",
                      "",
                      "Record the velocities too, or remove [body.drag] and [body.added_mass] to get buoyancy "
                      "alone"});

@@ -27,6 +27,10 @@ struct ReplayOptions {
   OpenPolicy open = OpenPolicy::kRefuse;
   std::string scale = "1";        // FACTOR or X,Y,Z
   std::optional<std::string> up;  // AXIS
+  std::string format = "auto";    // of INPUT
+  std::string time_unit;          // s, ms, us or ns; empty: guessed
+  std::string body;               // of the poses of another program; empty: the scene's only one
+  bool list = false;              // list the channels of INPUT, compute nothing
   std::filesystem::path input;
   std::filesystem::path output;
   std::string states_channel{kStatesChannel};
@@ -58,9 +62,17 @@ struct ReplayPlan {
 
 // Errors: an extension other than .csv and .lcmlog, an output that is the input, a channel that LCM cannot
 // carry, one channel for two types, an unknown method, a scale or an axis that is none, options for logs with
-// a CSV file, a part of what is no regular file, a file of loads that is another file of the replay or beside
-// a part.
+// a table and for tables with a log, a part of what is no regular file, a file of loads that is another file
+// of the replay or beside a part.
 Expected<ReplayPlan> plan_replay(const ReplayOptions& options);
+
+// The format of INPUT: by --format, else by its extension .lcmlog or .csv, else a log if it begins with an
+// event.
+FileFormat input_format(const ReplayOptions& options);
+TableOptions table_options(const ReplayOptions& options);
+
+// Checks the options of --list, which app has parsed. Errors: an OUTPUT, an option that belongs to a replay.
+Expected<void> check_list(const CLI::App& app, const ReplayOptions& options);
 
 // Checks the options of --join, which app has parsed. Errors: an option that belongs to a replay, an
 // extension other than .csv and .lcmlog, an output that is the input.
@@ -77,7 +89,11 @@ struct ReplayRoutes {
 // loads for a scene in which no body has this output.
 Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& scene);
 
-// Errors: a CSV file without velocities for a scene in which a body has drag or added mass.
+// Sets the body of another program's poses. Errors: --body or --time-unit for an input that states both; no
+// such body, or none named of several.
+Expected<void> choose_body(const ReplayOptions& options, const Scene& scene, ReplayInput& input);
+
+// Errors: a table without velocities for a body of the scene that has drag or added mass.
 Expected<void> check_velocity_columns(const ReplayInput& input, const ReplayOptions& options,
                                       const Scene& scene);
 

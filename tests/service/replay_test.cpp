@@ -379,7 +379,7 @@ TEST_F(Replay, RejectsInvalidArgumentsWithOneLineAndUsageError) {
       {"--scene", scene_, path("gone.csv"), out},
       {"--scene", scene_, path("gone.lcmlog"), out},
       {"--scene", scene_, in, path("out.txt")},
-      {"--scene", scene_, write("in.txt", ""), out},
+      {"--scene", scene_, write("in.txt", "hello\n"), out},
       {"--scene", scene_, in, in},
       {"--scene", scene_, in, path("./in.csv")},
       {"--scene", scene_, wrong_header, out},
