@@ -107,7 +107,8 @@ bool read_time(std::string_view text, TimeUnit unit, std::int64_t& utime) {
   if (per_second >= kMicrosecondsPerSecond && parse_number(text, whole)) {
     const std::int64_t divisor = per_second / kMicrosecondsPerSecond;
     const std::int64_t rest = ((whole % divisor) + divisor) % divisor;
-    utime = (whole - rest) / divisor + (2 * rest >= divisor && divisor > 1 ? 1 : 0);
+    const std::int64_t floor = whole / divisor - (whole % divisor < 0 ? 1 : 0);
+    utime = floor + (divisor > 1 && 2 * rest >= divisor ? 1 : 0);
     return std::abs(static_cast<double>(whole)) / static_cast<double>(divisor) < kLargestTime;
   }
   double value = 0.0;

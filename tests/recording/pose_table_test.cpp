@@ -2,7 +2,7 @@
 #include "recording/pose_table.h"
 
 #include <cmath>
-#include <limits>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -70,6 +70,10 @@ struct Case {
   std::string description;
   std::int64_t utime;
 };
+
+std::ostream& operator<<(std::ostream& stream, const Case& tested) {
+  return stream << tested.name;
+}
 
 class PoseTableFormats : public testing::TestWithParam<Case> {};
 
@@ -183,6 +187,12 @@ TEST(PoseTable, ReadsTimesInTheStatedUnit) {
     const Poses poses = read_poses("1500 0 0 0 0 0 0 1\n-1500 0 0 0 0 0 0 1\n", {TableFormat::kTum, unit});
     EXPECT_THAT(poses.utimes, ElementsAre(utime, unit == TimeUnit::kNanoseconds ? -1 : -utime));
   }
+}
+
+TEST(PoseTable, ReadsTheSmallestTimeInNanoseconds) {
+  const Poses poses =
+      read_poses("-9223372036854775808 0 0 0 0 0 0 1\n", {TableFormat::kTum, TimeUnit::kNanoseconds});
+  EXPECT_THAT(poses.utimes, ElementsAre(-9'223'372'036'854'776));
 }
 
 TEST(PoseTable, KeepsOrderAndRepeatedTimesAsALogDoes) {
