@@ -1,6 +1,9 @@
 // Runs buoyancy-replay on poses as other programs write them, and lists what inputs hold.
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
