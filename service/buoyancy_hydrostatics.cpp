@@ -12,6 +12,7 @@
 #include "cli/command_line.h"
 #include "cli/progress_bar.h"
 #include "scene/mesh_warnings.h"
+#include "service/hydrostatics/ballast_results.h"
 #include "service/hydrostatics/hydrostatics_options.h"
 #include "service/hydrostatics/hydrostatics_output.h"
 #include "service/hydrostatics/hydrostatics_page.h"
@@ -108,6 +109,17 @@ Expected<Output> righting_output(const LoadedBody& loaded, const HydrostaticsOpt
                 missing_heels(results->curve)};
 }
 
+Expected<Output> ballast_output(const CLI::App& app, const LoadedBody& loaded,
+                                const HydrostaticsOptions& options, const HydrostaticsPlan& plan) {
+  const Expected<Ballast> ballast = find_ballast(loaded.body, loaded.water(), plan.ballast);
+  if (!ballast) return tl::unexpected(ballast.error());
+  if (const std::optional<Warning> outside = outside_warning(*ballast)) print_warning(app, *outside);
+  return Output{.text = options.json ? json_lines(ballast_json(*ballast)) : ballast_text(*ballast),
+                .csv = ballast_csv(*ballast),
+                .html = "",
+                .missing = instability(*ballast)};
+}
+
 int run(int argc, char** argv) {
   CLI::App app("", "buoyancy-hydrostatics");
   HydrostaticsOptions options;
@@ -146,6 +158,9 @@ int run(int argc, char** argv) {
       break;
     case HydrostaticsCommand::kRightingArms:
       output = righting_output(*loaded, options, *plan, three);
+      break;
+    case HydrostaticsCommand::kBallast:
+      output = ballast_output(app, *loaded, options, *plan);
       break;
   }
   if (!output) return fail(output.error(), kFailure);

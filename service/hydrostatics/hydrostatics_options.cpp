@@ -19,10 +19,11 @@
 namespace buoyancy::service {
 namespace {
 
-constexpr std::array<std::pair<const char*, HydrostaticsCommand>, 3> kCommands{
+constexpr std::array<std::pair<const char*, HydrostaticsCommand>, 4> kCommands{
     {{"equilibrium", HydrostaticsCommand::kEquilibrium},
      {"table", HydrostaticsCommand::kTable},
-     {"gz", HydrostaticsCommand::kRightingArms}}};
+     {"gz", HydrostaticsCommand::kRightingArms},
+     {"ballast", HydrostaticsCommand::kBallast}}};
 
 Expected<Vec3> parse_point(const std::string& subject, const std::string& text) {
   if (const std::optional<Vec3> point = parse_vector(text)) return *point;
@@ -44,39 +45,67 @@ Expected<void> check_angles(const std::string& subject, const std::vector<double
   return {};
 }
 
-// Refuses options that the command does not use, a table without --draft, and a mesh without the mass that
-// the command needs.
+// Refuses options that the command does not use, and a table without --draft.
 Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand command) {
+  using enum HydrostaticsCommand;
   struct Use {
     const char* option;
-    HydrostaticsCommand command;
+    std::vector<HydrostaticsCommand> commands;
   };
-  constexpr std::array<Use, 6> kUses{{{"--unstable", HydrostaticsCommand::kEquilibrium},
-                                      {"--draft", HydrostaticsCommand::kTable},
-                                      {"--heel", HydrostaticsCommand::kRightingArms},
-                                      {"--fixed-trim", HydrostaticsCommand::kRightingArms},
-                                      {"--deck-edge", HydrostaticsCommand::kRightingArms},
-                                      {"--downflooding", HydrostaticsCommand::kRightingArms}}};
-  for (const Use& use : kUses) {
-    if (app.count(use.option) == 0 || use.command == command) continue;
-    return make_error({use.option, "with another command",
-                       std::string("the command ") + kCommands[static_cast<std::size_t>(use.command)].first,
-                       "", ""});
+  const std::vector<Use> uses{{"--unstable", {kEquilibrium}},
+                              {"--draft", {kTable, kBallast}},
+                              {"--heel", {kRightingArms, kBallast}},
+                              {"--fixed-trim", {kRightingArms}},
+                              {"--deck-edge", {kRightingArms}},
+                              {"--downflooding", {kRightingArms}},
+                              {"--body-mass", {kBallast}},
+                              {"--at", {kBallast}},
+                              {"--along", {kBallast}}};
+  for (const Use& use : uses) {
+    if (app.count(use.option) == 0 || std::ranges::count(use.commands, command) > 0) continue;
+    std::string commands;
+    for (const HydrostaticsCommand one : use.commands) {
+      if (!commands.empty()) commands += " or ";
+      commands += kCommands[static_cast<std::size_t>(one)].first;
+    }
+    return make_error({use.option, "with another command", "the command " + commands, "", ""});
   }
-  for (const char* option : {"--mass", "--center-of-mass"}) {
-    if (app.count("--mesh") == 0 || !needs_mass(command) || app.count(option) > 0) continue;
-    return make_error({"--mesh", std::string("no ") + option, "--mass and --center-of-mass of the body",
-                       "what floats has a mass", "For instance --mass 1000 --center-of-mass 0,0,0.5"});
-  }
-  const bool has_trim = command == HydrostaticsCommand::kTable || app.count("--fixed-trim") > 0;
+  const bool is_ballast = command == HydrostaticsCommand::kBallast;
+  const bool has_trim = command == HydrostaticsCommand::kTable || is_ballast || app.count("--fixed-trim") > 0;
   if (app.count("--trim") > 0 && !has_trim) {
-    return make_error({"--trim", "without --fixed-trim", "the command table, or gz with --fixed-trim",
-                       "a body trims freely", ""});
+    return make_error({"--trim", "without --fixed-trim",
+                       "the command table or ballast, or gz with --fixed-trim", "a body trims freely", ""});
   }
   if (command == HydrostaticsCommand::kTable && app.count("--draft") == 0) {
     return make_error(
         {"table", "no --draft", "--draft FROM:TO:STEP in metres", "", "For instance --draft 1:5:0.5"});
   }
+  return {};
+}
+
+// Sets the mass and the centre of mass of a mesh: of the command ballast its mass is --body-mass, since
+// --mass is that of the ballast.
+Expected<void> plan_mass(const HydrostaticsOptions& options, HydrostaticsPlan& plan) {
+  const bool is_ballast = plan.command == HydrostaticsCommand::kBallast;
+  const char* name = is_ballast ? "--body-mass" : "--mass";
+  plan.mass = is_ballast ? options.body_mass : options.mass;
+  if (options.mesh.empty()) {
+    if (!plan.mass) return {};
+    return make_error({name, "with --scene", "--mesh", "the scene says what the body weighs",
+                       "Set mass in its section [body.client]"});
+  }
+  const bool has_center = !options.center_of_mass.empty();
+  if (!plan.mass && !has_center && !needs_mass(plan.command)) return {};
+  if (!plan.mass || !has_center) {
+    return make_error(
+        {"--mesh", std::string("without ") + (plan.mass ? "--center-of-mass" : name),
+         std::string(name) + " and --center-of-mass of the body",
+         is_ballast && options.mass ? "--mass is that of the ballast" : "what floats has a mass",
+         std::string("For instance ") + name + " 1000 --center-of-mass 0,0,0.5"});
+  }
+  const Expected<Vec3> center = parse_point("--center-of-mass", options.center_of_mass);
+  if (!center) return tl::unexpected(center.error());
+  plan.center_of_mass_B = *center;
   return {};
 }
 
@@ -145,6 +174,7 @@ Expected<void> plan_axes(const HydrostaticsOptions& options, const ShipAxes& own
   if (!checked) return tl::unexpected(checked.error());
   plan.table.axes = *checked;
   plan.arms.axes = *checked;
+  plan.ballast.axes = *checked;
   return {};
 }
 
@@ -198,11 +228,15 @@ void add_mesh_options(CLI::App& app, CLI::Option* mesh, HydrostaticsOptions& opt
 
 void add_options(CLI::App& app, HydrostaticsOptions& options) {
   app.description(
-      "Compute where and how a body floats: its equilibrium attitudes, righting arms, and hydrostatic\n"
-      "tables. Angles are in degrees, heel positive to starboard, trim positive by the stern.\n" +
-      exit_status_help({.success = "on success, also if the body sinks",
-                        .failure = "on a runtime error, or if a righting arm or a row has no result",
-                        .usage_error = "on invalid arguments, scene or mesh"}));
+      "Compute where and how a body floats: its equilibrium attitudes, righting arms, hydrostatic tables,\n"
+      "and where ballast belongs. Angles are in degrees, heel positive to starboard, trim positive by the "
+      "stern.\n" +
+      exit_status_help(
+          {.success = "on success, also if the body sinks",
+           .failure =
+               "on a runtime error, if a righting arm or a row has no result, or if no stable ballast is\n"
+               "found",
+           .usage_error = "on invalid arguments, scene or mesh"}));
   app.set_version_flag("--version", "buoyancy-hydrostatics " BUOYANCY_VERSION);
   auto* from = app.add_option_group("body", "Input geometry (exactly one)");
   CLI::Option* scene = from->add_option("--scene", options.scene, "Scene file (TOML): water and bodies");
@@ -211,16 +245,17 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
   app.add_option("--body", options.body, "With --scene: id of the body (default: the only one)")
       ->needs(scene)
       ->option_text("ID");
-  CLI::Option* mass = app.add_option("--mass", options.mass, "With --mesh: mass, kg")
-                          ->needs(mesh)
-                          ->check(CLI::PositiveNumber)
-                          ->option_text("M");
-  CLI::Option* center = app.add_option("--center-of-mass", options.center_of_mass,
-                                       "With --mesh: centre of mass in the frame of the (scaled) mesh, m")
-                            ->needs(mesh)
-                            ->option_text("X,Y,Z");
-  mass->needs(center);
-  center->needs(mass);
+  app.add_option("--mass", options.mass, "With --mesh: mass, kg; ballast: mass of the ballast")
+      ->check(CLI::PositiveNumber)
+      ->option_text("M");
+  app.add_option("--body-mass", options.body_mass,
+                 "ballast with --mesh: mass of the body without the ballast, kg")
+      ->check(CLI::PositiveNumber)
+      ->option_text("M");
+  app.add_option("--center-of-mass", options.center_of_mass,
+                 "With --mesh: centre of mass in the frame of the (scaled) mesh, m")
+      ->needs(mesh)
+      ->option_text("X,Y,Z");
   add_mesh_options(app, mesh, options);
   app.add_option("--forward", options.forward,
                  "The ship's forward axis in the frame of the mesh: x, --forward=-x, y ...")
@@ -239,13 +274,24 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
                  "Along the forward axis, m (default: the forward end of the mesh)")
       ->option_text("X");
   app.add_flag("--unstable", options.unstable, "equilibrium: also report unstable attitudes");
-  app.add_option("--draft", options.drafts, "table: drafts over the keel at midship, m")
+  app.add_option("--draft", options.drafts,
+                 "table: drafts over the keel at midship, m; ballast: draft of the lowest point")
       ->option_text("FROM:TO:STEP");
-  app.add_option("--trim", options.trims, "table: trims, degrees; gz: the fixed trim")
+  app.add_option("--trim", options.trims,
+                 "table: trims, degrees; gz: the fixed trim; ballast: the target [0]")
       ->option_text("FROM:TO:STEP [0]");
-  app.add_option("--heel", options.heels, "gz: heels, degrees")->option_text("FROM:TO:STEP [-180:180:5]");
+  app.add_option("--heel", options.heels, "gz: heels, degrees; ballast: the target [0]")
+      ->option_text("FROM:TO:STEP [-180:180:5]");
   app.add_flag("--fixed-trim", options.fixed_trim,
                "gz: fix the trim at that of --trim, instead of letting the body trim");
+  app.add_option(
+         "--at", options.ballast_places,
+         "ballast: where it is, in the frame of the mesh, m; twice: split it. Default: find the place")
+      ->allow_extra_args(false)
+      ->option_text("X,Y,Z");
+  app.add_option("--along", options.ballast_line,
+                 "ballast: find the place on the line along this axis through --at, or else the origin")
+      ->option_text("x|y|z");
   app.add_option("--deck-edge", options.deck_edges,
                  "gz: a point of the deck edge in the frame of the mesh, m; report the heels to either side "
                  "at which the first goes under water. Repeatable")
@@ -265,11 +311,54 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
       ->needs(html)
       ->capture_default_str();
   app.add_flag("--json", options.json, "Print the results as JSON");
-  app.add_option("COMMAND", options.command, "equilibrium, table or gz")
+  app.add_option("COMMAND", options.command, "equilibrium, table, gz or ballast")
       ->required()
-      ->check(CLI::IsMember({"equilibrium", "table", "gz"}))
-      ->option_text("equilibrium|table|gz");
+      ->check(CLI::IsMember({"equilibrium", "table", "gz", "ballast"}))
+      ->option_text("equilibrium|table|gz|ballast");
 }
+
+namespace {
+
+// Reads the target and the places, after the ranges of draft, heel and trim.
+Expected<void> plan_ballast(const CLI::App& app, const HydrostaticsOptions& options, HydrostaticsPlan& plan) {
+  if (plan.command != HydrostaticsCommand::kBallast) return {};
+  if (app.count("--html") > 0) {
+    return make_error({"--html", "with ballast", "another command", "ballast has no page",
+                       "Put the mass and centre of mass that it prints into a scene, for equilibrium"});
+  }
+  const auto one_of = [&app](const char* name, const std::vector<double>& values) -> Expected<double> {
+    if (app.count(name) == 0) return 0.0;
+    if (values.size() == 1) return values.front();
+    return make_error({name, std::to_string(values.size()) + " values", "one number with ballast", "", ""});
+  };
+  const Expected<double> heel = one_of("--heel", plan.heels);
+  if (!heel) return tl::unexpected(heel.error());
+  const Expected<double> trim = one_of("--trim", plan.trims);
+  if (!trim) return tl::unexpected(trim.error());
+  const Expected<double> draft = one_of("--draft", plan.drafts);
+  if (!draft) return tl::unexpected(draft.error());
+  if (!options.mass && app.count("--draft") == 0) {
+    return make_error({"ballast", "neither --mass nor --draft", "--mass M in kg, or --draft D in metres",
+                       "one of them decides how deep the body lies", "For instance --mass 100"});
+  }
+  plan.ballast = {.target = {*heel, *trim}, .mass = options.mass};
+  if (app.count("--draft") > 0) plan.ballast.draft = *draft;
+  Expected<std::vector<Vec3>> places = parse_points("--at", options.ballast_places);
+  if (!places) return tl::unexpected(places.error());
+  plan.ballast.places_B = *std::move(places);
+  const std::size_t most = options.ballast_line.empty() ? 2 : 1;
+  if (plan.ballast.places_B.size() > most) {
+    return make_error({"--at", std::to_string(plan.ballast.places_B.size()) + " places",
+                       "at most two, or one with --along", "", ""});
+  }
+  if (options.ballast_line.empty()) return {};
+  const Expected<Vec3> along = parse_axis("--along", options.ballast_line);
+  if (!along) return tl::unexpected(along.error());
+  plan.ballast.along_B = *along;
+  return {};
+}
+
+}  // namespace
 
 Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const HydrostaticsOptions& options) {
   HydrostaticsPlan plan;
@@ -279,11 +368,7 @@ Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const Hydrosta
   if (const Expected<void> checked = check_command_options(app, plan.command); !checked) {
     return tl::unexpected(checked.error());
   }
-  if (!options.center_of_mass.empty()) {
-    const Expected<Vec3> center = parse_point("--center-of-mass", options.center_of_mass);
-    if (!center) return tl::unexpected(center.error());
-    plan.center_of_mass_B = *center;
-  }
+  if (const Expected<void> mass = plan_mass(options, plan); !mass) return tl::unexpected(mass.error());
   if (!options.mesh.empty()) {
     const Expected<Vec3> scale = parse_scale(options.scale);
     if (!scale) return tl::unexpected(scale.error());
@@ -298,6 +383,9 @@ Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const Hydrosta
   }
   if (const Expected<void> points = plan_points(options, plan); !points) {
     return tl::unexpected(points.error());
+  }
+  if (const Expected<void> ballast = plan_ballast(app, options, plan); !ballast) {
+    return tl::unexpected(ballast.error());
   }
   for (const std::filesystem::path& output : {options.csv, options.html}) {
     if (output.empty()) continue;

@@ -10,6 +10,7 @@
 #include <CLI/App.hpp>
 
 #include "base/error.h"
+#include "flotation/ballast.h"
 #include "flotation/hydrostatic_table.h"
 #include "flotation/righting_arms.h"
 #include "scene/scene_file.h"
@@ -23,7 +24,8 @@ struct HydrostaticsOptions {
   std::filesystem::path scene;
   std::optional<std::int32_t> body;
   std::filesystem::path mesh;
-  std::optional<double> mass;         // [kg]
+  std::optional<double> mass;         // [kg], of the mesh; of the command ballast: of the ballast
+  std::optional<double> body_mass;    // [kg], of the mesh without the ballast
   std::string center_of_mass;         // X,Y,Z
   std::string scale = "1";            // FACTOR or X,Y,Z
   double density = kSeawaterDensity;  // [kg/m^3], of the water
@@ -39,8 +41,10 @@ struct HydrostaticsOptions {
   std::string trims = "0";
   std::string heels = "-180:180:5";
   bool fixed_trim = false;
-  std::vector<std::string> deck_edges;     // X,Y,Z each
-  std::vector<std::string> downfloodings;  // X,Y,Z each
+  std::vector<std::string> ballast_places;  // X,Y,Z each
+  std::string ballast_line;                 // an axis; empty: none
+  std::vector<std::string> deck_edges;      // X,Y,Z each
+  std::vector<std::string> downfloodings;   // X,Y,Z each
   std::filesystem::path csv;
   std::filesystem::path html;
   std::filesystem::path three = view::kThreeJs;
@@ -49,16 +53,18 @@ struct HydrostaticsOptions {
 
 void add_options(CLI::App& app, HydrostaticsOptions& options);
 
-enum class HydrostaticsCommand { kEquilibrium, kTable, kRightingArms };
+enum class HydrostaticsCommand { kEquilibrium, kTable, kRightingArms, kBallast };
 
 // The options, checked.
 struct HydrostaticsPlan {
   HydrostaticsCommand command = HydrostaticsCommand::kEquilibrium;
+  std::optional<double> mass;            // [kg], of the body, with --mesh
   Vec3 center_of_mass_B = Vec3::Zero();  // [m], with --mesh
   MeshPlacement placement;               // with --mesh
   HydrostaticTableOptions table;
   RightingArmOptions arms;
   ImmersionPoints points;
+  BallastTask ballast;
   std::vector<double> drafts;  // [m]
   std::vector<double> trims;   // [rad]
   std::vector<double> heels;   // [rad]

@@ -43,11 +43,10 @@ Expected<LoadedBody> load_body(const HydrostaticsOptions& options, const Hydrost
   if (!body) return tl::unexpected(body.error());
 
   Expected<RigidBodyMass> mass =
-      RigidBodyMass{.mass = options.mass.value_or(0.0), .center_of_mass_B = plan.center_of_mass_B};
+      RigidBodyMass{.mass = plan.mass.value_or(0.0), .center_of_mass_B = plan.center_of_mass_B};
   if (options.mesh.empty()) mass = mass_of_body(**body, scene->water());
   const DynamicsSpec& dynamics = (*body)->dynamics;
-  const bool knows_mass =
-      options.mesh.empty() ? (dynamics.mass || dynamics.density) : options.mass.has_value();
+  const bool knows_mass = options.mesh.empty() ? (dynamics.mass || dynamics.density) : plan.mass.has_value();
   if (options.mesh.empty() && !dynamics.given) {
     mass = make_error({scene->name() + ": body '" + (*body)->name + "'", "no section [body.client]",
                        "a section [body.client] with density, or with mass and center_of_mass",

@@ -174,6 +174,77 @@ TEST_F(HydrostaticsProgram, TakesAMeshWithAMass) {
   EXPECT_TRUE(contains(without_mass.standard_error, "--mass"));
 }
 
+// A tenth of the ship's mass: the result, put into a scene, floats at the target.
+TEST_F(HydrostaticsProgram, BallastsTheShipToATarget) {
+  const std::string csv = dir_.path("ballast.csv");
+  const FinishedProcess result =
+      run({"ballast", "--scene", ship(), "--mass", "984000", "--heel", "2", "--trim=-0.5", "--csv", csv});
+  ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+  EXPECT_EQ(csv_rows(read_file(csv)).at(0), (CsvRow{"mass", "x", "y", "z"}));
+  const std::string start = "[body.client]\n";
+  const std::string client = result.standard_output.substr(result.standard_output.find(start) + start.size());
+  const FinishedProcess floats = run({"equilibrium", "--scene", scene(client), "--json"});
+  ASSERT_EQ(floats.exit_code, 0) << floats.standard_error;
+  bool found = false;
+  const auto json = nlohmann::json::parse(floats.standard_output);
+  for (const auto& at : json.at("attitudes")) {
+    found = found || (std::abs(at.at("heel").get<double>() - 2.0) < 1e-7 &&
+                      std::abs(at.at("trim").get<double>() + 0.5) < 1e-7);
+  }
+  EXPECT_TRUE(found) << floats.standard_output;
+}
+
+TEST_F(HydrostaticsProgram, SplitsBallastAndFindsItOnALine) {
+  const FinishedProcess split =
+      run({"ballast", "--scene", ship(), "--draft", "6.6", "--at=-10,0,-5", "--at", "30,0,-5", "--json"});
+  ASSERT_EQ(split.exit_code, 0) << split.standard_error;
+  const auto json = nlohmann::json::parse(split.standard_output);
+  EXPECT_NEAR(json.at("ballast").at(0).at("mass").get<double>(), 738000.0, 1e-3);
+  EXPECT_NEAR(json.at("ballast").at(1).at("mass").get<double>(), 246000.0, 1e-3);
+  EXPECT_TRUE(json.at("stability_limit").is_null());
+  const FinishedProcess line =
+      run({"ballast", "--scene", ship(), "--mass", "1000", "--at", "9,0,-5", "--along", "x", "--json"});
+  ASSERT_EQ(line.exit_code, 0) << line.standard_error;
+  EXPECT_NEAR(
+      nlohmann::json::parse(line.standard_output).at("ballast").at(0).at("position").at(0).get<double>(), 0.0,
+      1e-6);
+}
+
+TEST_F(HydrostaticsProgram, SaysWhyBallastDoesNotDo) {
+  struct Case {
+    std::vector<std::string> arguments;
+    int exit_code;
+    const char* says;
+  };
+  const std::vector<Case> cases{
+      {{"--mass", "1e6", "--at", "0,3,0"}, 1, "to port"},
+      {{"--mass", "1e6", "--at", "0,0,40"}, 1, "in balance, but not stable: GM"},
+      {{"--mass", "1e6", "--at", "0,0,40"}, 1, "outside of the hull"},
+      {{"--mass", "1e6", "--at", "9,0,0", "--at", "5,0,0"}, 1, "it would take -"},
+      {{"--draft", "5"}, 1, "takes -1.64e+06 kg"},
+      {{}, 2, "neither --mass nor --draft"},
+      {{"--mass", "1", "--heel", "0:4:1"}, 2, "one number"},
+      {{"--mass", "1", "--at", "1,2"}, 2, "--at"},
+      {{"--mass", "1", "--at", "1,2,3", "--at", "1,2,3", "--along", "x"},
+       2,
+       "at most two, or one with --along"},
+      {{"--mass", "1", "--along", "up"}, 2, "--along"},
+      {{"--mass", "1", "--body-mass", "2"}, 2, "with --scene"},
+      {{"--mass", "1", "--html", "a.html"}, 2, "--html"},
+  };
+  for (const Case& each : cases) {
+    std::vector<std::string> arguments{"ballast", "--scene", ship()};
+    arguments.insert(arguments.end(), each.arguments.begin(), each.arguments.end());
+    const FinishedProcess result = run(arguments);
+    EXPECT_EQ(result.exit_code, each.exit_code) << result.standard_error;
+    EXPECT_TRUE(contains(result.standard_error, each.says)) << result.standard_error;
+  }
+  const FinishedProcess mesh =
+      run({"ballast", "--mesh", "a.obj", "--mass", "1", "--center-of-mass", "0,0,0"});
+  EXPECT_EQ(mesh.exit_code, 2);
+  EXPECT_TRUE(contains(mesh.standard_error, "--body-mass")) << mesh.standard_error;
+}
+
 // [m rad], under the curve of the wall-sided ship from 0 to a heel.
 double wall_sided_area(double heel) {
   constexpr double kBm = 400.0 / 72.0;
@@ -524,6 +595,8 @@ TEST_F(HydrostaticsProgram, RejectsWrongArguments) {
       {"gz", "--scene", good, "--downflooding", "1,2,nan"},
       {"table", "--scene", good, "--draft", "1", "--deck-edge", "1,2,3"},
       {"equilibrium", "--scene", good, "--downflooding", "1,2,3"},
+      {"gz", "--scene", good, "--mass", "1"},
+      {"gz", "--scene", good, "--at", "1,2,3"},
       {"gz", "--scene", good, "--density", "1000"},
       {"gz", "--scene", good, "--scale", "2"},
       {"gz", "--mesh", "a.obj", "--mass", "1", "--center-of-mass", "0,0,0", "--scale", "0"},
