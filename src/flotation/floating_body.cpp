@@ -51,6 +51,11 @@ std::optional<Error> fault_of(const Tank& tank) {
     error.expected = "a closed mesh prepared with its tree";
     return error;
   }
+  if (tank.piston_axis_B && !(std::abs(tank.piston_axis_B->squaredNorm() - 1.0) <= 1e-9)) {
+    error.actual = "a piston axis " + format_vector(*tank.piston_axis_B);
+    error.expected = "a unit vector";
+    return error;
+  }
   const bool fits = tank.liquid_volume >= 0.0 && tank.liquid_volume <= tank.mesh->volume;
   if (fits && tank.density >= 0.0 && std::isfinite(tank.density)) return std::nullopt;
   error.actual = format_shortest(tank.liquid_volume) + " m^3 of density " + format_shortest(tank.density);

@@ -62,9 +62,10 @@ TankLiquid tank_liquid(const Tank& tank, const Vec3& up_B) {
     liquid.centroid = mesh.centroid;
     return liquid;
   }
-  const FilledTo filled = find_level(tank, up_B);
-  liquid.has_free_surface = true;
-  liquid.surface = {.up_B = up_B, .h_c = filled.level};
+  const Vec3& across_B = tank.piston_axis_B ? *tank.piston_axis_B : up_B;
+  const FilledTo filled = find_level(tank, across_B);
+  liquid.has_free_surface = !tank.piston_axis_B;
+  liquid.surface = {.up_B = across_B, .h_c = filled.level};
   liquid.volume = filled.below.volume;
   liquid.volume_error += filled.below.rounding + std::abs(filled.excess);
   if (liquid.volume > 0.0) liquid.centroid = filled.below.moment / liquid.volume;

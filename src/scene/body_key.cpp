@@ -30,6 +30,7 @@ BodyKey BodyKeys::floating(const Body& body, const RigidBodyMass& own) const {
   key.push_back(-1.0);  // no index: tanks follow
   for (const BodyTank& tank : body.subdivision->tanks) {
     key.insert(key.end(), {index_of(*tank.prepared_mesh), tank.density, tank.liquid_volume});
+    append(tank.piston_axis_B.value_or(Vec3::Zero()), key);
   }
   return key;
 }

@@ -24,7 +24,7 @@ Mat3 inertia_from(const Mat3& second_moments) {
 
 // [m^5], of the liquid about its own centroid, at a density of 1 kg/m^3.
 Mat3 frozen_inertia(const BodyTank& tank, const Tank& filled, const TankLiquid& liquid) {
-  if (!liquid.has_free_surface) return tank.prepared_mesh->mass_properties.inertia_B;
+  if (filled.liquid_volume >= tank.capacity()) return tank.prepared_mesh->mass_properties.inertia_B;
   constexpr int kPanels = 16;
   const double offset = std::sqrt(0.6);  // Gauss' rule of three points
   const std::array<std::pair<double, double>, 3> rule{

@@ -238,7 +238,8 @@ Expected<Subdivision> prepare_subdivision(const BodyDescription& body, double to
     }
     const Expected<double> volume = liquid_volume_of(described, **prepared, user);
     if (!volume) return make_error(volume.error());
-    subdivision.tanks.push_back({described.name, *prepared, described.density, *volume});
+    subdivision.tanks.push_back(
+        {described.name, *prepared, described.density, *volume, described.piston_axis_B});
   }
   return subdivision;
 }

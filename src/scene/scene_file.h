@@ -115,6 +115,7 @@ struct TankDescription {
   double density = 0.0;                 // [kg/m^3], of the liquid; default: the water's
   std::optional<double> fill;           // 0 to 1, at the start: of the tank's volume; or
   std::optional<double> liquid_volume;  // [m^3], >= 0
+  std::optional<Vec3> piston_axis_B;    // unit: of a tank without a free surface, see Tank
   std::string source_location;
 };
 

@@ -8,6 +8,7 @@
 // is part of the body: its weight is part of the body's wrench, and not of its mass ([body.client] mass).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ struct BodyTank {
   const PreparedMesh* prepared_mesh = nullptr;  // in the body's frame, with its tree; owned by the scene
   double density = 0.0;                         // [kg/m^3], of the liquid
   double liquid_volume = 0.0;                   // [m^3], at the start
+  std::optional<Vec3> piston_axis_B = {};       // see Tank
 
   double capacity() const { return prepared_mesh->mesh.volume; }  // [m^3]
 };
@@ -63,7 +65,10 @@ inline double factor_of(const BodyCompartment& compartment, double flooded) {
 
 // Returns the tank with this volume of liquid [m^3] in it.
 inline Tank with_liquid(const BodyTank& tank, double liquid_volume) {
-  return {.mesh = &tank.prepared_mesh->mesh, .liquid_volume = liquid_volume, .density = tank.density};
+  return {.mesh = &tank.prepared_mesh->mesh,
+          .liquid_volume = liquid_volume,
+          .density = tank.density,
+          .piston_axis_B = tank.piston_axis_B};
 }
 
 }  // namespace buoyancy

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "scene/up_axis.h"
+
 namespace buoyancy {
 namespace {
 
@@ -52,6 +54,9 @@ void add_subdivision(const Body& body, const Scene& scene, Facts& facts) {
     one.add("fill", tank.liquid_volume / tank.capacity(), "fill {:6}");
     one.add("density", tank.density, "{} kg/m^3");
     one.add("liquid_mass", tank.density * tank.liquid_volume, "{:6} kg");
+    if (tank.piston_axis_B) {
+      one.say("piston along {}", axis_name(*tank.piston_axis_B)).add("piston_axis", *tank.piston_axis_B);
+    }
     facts.include_in("tanks", std::move(one));
   }
 }

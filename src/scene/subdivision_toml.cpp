@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scene/shape_toml.h"
+#include "scene/up_axis.h"
 
 namespace buoyancy {
 namespace {
@@ -16,7 +17,8 @@ struct SectionContext {
   SceneParseContext& context;
 };
 
-// Calls read(element, table) for every section [[body.<key>]].
+// Calls read(description, table, orientation_B) for every section [[body.<key>]]. orientation_B: of its
+// frame.
 template <typename Description, typename Read>
 void parse_sections(TomlTable& body, std::string_view key, const SectionContext& where,
                     std::vector<Description>& descriptions, const Read& read) {
@@ -44,7 +46,7 @@ void parse_sections(TomlTable& body, std::string_view key, const SectionContext&
     table.read("position", in_body.position_B, "m");
     parse_orientation(table, in_body.orientation_B);
     description.mesh.placement = compose(in_body, description.mesh.placement);
-    read(description, table);
+    read(description, table, in_body.orientation_B);
     if (!has_source) {
       table.fail("neither 'mesh' nor 'shape'", "one of them", {},
                  "Add mesh = \"FILE\" or shape = { type = \"box\", size = [1, 1, 1] }");
@@ -88,11 +90,27 @@ void parse_repair(TomlTable& table, MeshRepair& repair) {
   repair.closing.freeboard = freeboard.value_or(0.0);
 }
 
-void read_tank(TankDescription& tank, const Water& water, TomlTable& table) {
+// Reads `surface` and `fill_axis`. orientation_B: of the tank's frame, of any norm.
+void read_piston(TankDescription& tank, const Eigen::Quaterniond& orientation_B, TomlTable& table) {
+  constexpr std::array<std::string_view, 2> kSurfaces{"level", "none"};
+  constexpr std::array<std::string_view, 6> kFillAxes{"x", "y", "z", "-x", "-y", "-z"};
+  const bool has_piston = table.choice("surface", kSurfaces) == std::size_t{1};
+  const std::optional<std::size_t> axis = table.choice("fill_axis", kFillAxes);
+  if (has_piston) {
+    tank.piston_axis_B = orientation_B.normalized() * *axis_from_name(axis ? kFillAxes[*axis] : "z");
+  } else if (axis) {
+    table.fail_at("fill_axis", "a fill axis only with surface = \"none\"",
+                  "liquid with a level surface fills the tank from its lowest point", "Remove it");
+  }
+}
+
+void read_tank(TankDescription& tank, const Water& water, const Eigen::Quaterniond& orientation_B,
+               TomlTable& table) {
   tank.density = water.density;
   table.read("density", tank.density, NumberRange::from_zero("kg/m^3"));
   table.read("fill", tank.fill, NumberRange::from_zero_to(1.0));
   table.read("liquid_volume", tank.liquid_volume, NumberRange::from_zero("m^3"));
+  read_piston(tank, orientation_B, table);
   table.finish();
   if (tank.fill && tank.liquid_volume) {
     table.fail("both 'fill' and 'liquid_volume'", "one of them", {}, "Remove one");
@@ -166,15 +184,17 @@ void parse_subdivision(TomlTable& body_table, const std::string& body_name, cons
                        BodyDescription& body) {
   const SectionContext where{body_name, directory, context};
   parse_sections(body_table, "part", where, body.parts,
-                 [](const PartDescription&, TomlTable& table) { table.finish(); });
+                 [](const PartDescription&, TomlTable& table, const auto&) { table.finish(); });
   parse_sections(body_table, "compartment", where, body.compartments,
-                 [](CompartmentDescription& compartment, TomlTable& table) {
+                 [](CompartmentDescription& compartment, TomlTable& table, const auto&) {
                    table.read("permeability", compartment.permeability, NumberRange::above_zero_to(1.0));
                    table.read("flooded", compartment.flooded, NumberRange::from_zero_to(1.0));
                    table.finish();
                  });
   parse_sections(body_table, "tank", where, body.tanks,
-                 [&water](TankDescription& tank, TomlTable& table) { read_tank(tank, water, table); });
+                 [&water](TankDescription& tank, TomlTable& table, const Eigen::Quaterniond& orientation_B) {
+                   read_tank(tank, water, orientation_B, table);
+                 });
 }
 
 }  // namespace buoyancy

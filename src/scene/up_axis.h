@@ -14,7 +14,6 @@ namespace buoyancy {
 
 // The unit vector of "x", "+x", "-y" and so on; nullopt for other names, such as "not stated".
 std::optional<Vec3> axis_from_name(std::string_view name);
-
 // The name of an axis of coordinates, "-y" for instance; the components of another direction.
 std::string axis_name(const Vec3& direction);
 

@@ -55,6 +55,16 @@ TEST(RequestHandlerWithConditions, RespondsAsForTheSceneWithThisCondition) {
   EXPECT_EQ(handler.counters().conditions_received, 2);
 }
 
+TEST(RequestHandlerWithConditions, MovesThePistonOfATank) {
+  const std::string piston = "surface = \"none\"\nfill_axis = \"x\"\nfill = ";
+  const Scene scene = scene_of(damaged_boxes({.ballast = piston + "0.25"}));
+  const Scene pumped = scene_of(damaged_boxes({.ballast = piston + "0.75"}));
+  RequestHandler handler(scene);
+  RequestHandler expected(pumped);
+  ASSERT_TRUE(receive(handler, filled(100, 0, 0.75)));
+  EXPECT_EQ(reply_to(handler, request(100, 1)), reply_to(expected, request(100, 1)));
+}
+
 TEST(RequestHandlerWithConditions, EvaluatesAnewOnlyTheBodiesThatChange) {
   const Scene scene = scene_of(damaged_boxes());
   RequestHandler handler(scene);

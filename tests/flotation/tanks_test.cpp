@@ -129,5 +129,45 @@ TEST(FloatingBodyWithTanks, RejectsLiquidThatDoesNotFit) {
   EXPECT_EQ(error_of({&tank, 1.0, 1000.0}), "accepted");
 }
 
+TEST(FloatingBodyWithTanks, FloatsWithAPistonAsWithASolid) {
+  const HydrostaticMesh hull = mesh_of(BoxShape{{20, 8, 4}});
+  const HydrostaticMesh tank = box_at({{6, 3, 2}}, {4.0, 1.0, -0.8});
+  const double liquid = 9.0 * 900.0;  // [kg], a quarter of the tank
+  const FloatingBody body =
+      with_tanks(hull, 250e3, {0, 0, 0.2},
+                 {{.mesh = &tank, .liquid_volume = 9.0, .density = 900.0, .piston_axis_B = Vec3::UnitX()}});
+  const double total = 250e3 + liquid;
+  const Vec3 center_B = (250e3 * Vec3(0, 0, 0.2) + liquid * Vec3(1.0 + 0.75, 1.0, -0.8)) / total;
+  const FloatingBody solid = with_tanks(hull, total, center_B, {});
+
+  RandomPoses random(52);
+  for (int i = 0; i < 20; ++i) {
+    const Pose pose = random.crossing({hull.box_min + hull.center_B, hull.box_max + hull.center_B}, kWater);
+    const FloatingState a = floating_state(body, pose, kWater).value();
+    const FloatingState b = floating_state(solid, pose, kWater).value();
+    EXPECT_LE((a.force_W - b.force_W).norm(), 1e-12 * total * kWater.gravity) << i;
+    // Each torque is about the centre of the mass that is no liquid.
+    const Vec3 arm_W = pose.q_WB * (center_B - body.center_of_mass_B());
+    EXPECT_LE((a.torque_W - arm_W.cross(a.force_W) - b.torque_W).norm(), 1e-11 * total * kWater.gravity) << i;
+  }
+  const auto afloat = find_equilibrium_from(body, kWater, Eigen::Quaterniond::Identity());
+  const auto expected = find_equilibrium_from(solid, kWater, Eigen::Quaterniond::Identity());
+  ASSERT_TRUE(afloat && expected);
+  EXPECT_NEAR(afloat->angles.heel, expected->angles.heel, 1e-10);
+  EXPECT_NEAR(afloat->angles.trim, expected->angles.trim, 1e-10);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(afloat->stiffness[i], expected->stiffness[i], 1e-9 * expected->stiffness[1]);
+  }
+}
+
+TEST(FloatingBodyWithTanks, RejectsAPistonAxisThatIsNoUnitVector) {
+  const HydrostaticMesh hull = mesh_of(BoxShape{{2, 2, 2}});
+  const PlacedMesh placed{.mesh = &hull};
+  const Tank bad{.mesh = &hull, .liquid_volume = 0.5, .density = 1.0, .piston_axis_B = Vec3(1, 1, 0)};
+  const auto body = FloatingBody::make({&placed, 1}, 100.0, Vec3::Zero(), {&bad, 1});
+  ASSERT_FALSE(body);
+  EXPECT_TRUE(contains(body.error().message(), "piston axis"));
+}
+
 }  // namespace
 }  // namespace buoyancy

@@ -135,5 +135,38 @@ TEST(TankLiquid, KeepsATraceOfLiquid) {
   }
 }
 
+TEST(TankWithAPiston, HasItsCentreAtTheFilledShareOfABox) {
+  const HydrostaticMesh mesh = mesh_of(BoxShape{.size = {5.0, 2.0, 1.5}});
+  RandomPoses random(74);
+  for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)}) {
+    for (const double fill : {0.1, 0.5, 0.9}) {
+      Tank tank = filled(mesh, fill);
+      tank.piston_axis_B = axis;
+      const double length = std::abs(axis.dot(Vec3(5.0, 2.0, 1.5)));
+      const TankLiquid liquid = tank_liquid(tank, random.direction());
+      EXPECT_LE((liquid.centroid - 0.5 * (fill - 1.0) * length * axis).norm(), 1e-14) << fill;
+      EXPECT_NEAR(liquid.surface.h_c, (fill - 0.5) * length, 1e-14) << fill;
+      EXPECT_EQ(tank_liquid(tank, random.direction()).centroid, liquid.centroid);
+      EXPECT_FALSE(liquid.has_free_surface);
+      EXPECT_EQ(free_surface_second_moments(tank, liquid), Mat3::Zero());
+      EXPECT_LE(std::abs(liquid.volume - tank.liquid_volume), liquid.volume_error);
+    }
+  }
+}
+
+// From its apex on, a cone is filled as far as the cube root of the share.
+TEST(TankWithAPiston, FillsAConeByTheCubeOfTheLength) {
+  const HydrostaticMesh mesh = mesh_of(ConeShape{});
+  const double height = mesh.box_max.z() - mesh.box_min.z();
+  for (const double fill : {0.01, 0.3, 0.8}) {
+    Tank tank = filled(mesh, fill);
+    tank.piston_axis_B = -Vec3::UnitZ();
+    const double length = height * std::cbrt(fill);
+    const TankLiquid liquid = tank_liquid(tank, Vec3::UnitX());
+    EXPECT_NEAR(liquid.centroid.z(), mesh.box_max.z() - 0.75 * length, 1e-13) << fill;
+    EXPECT_NEAR(-liquid.surface.h_c, mesh.box_max.z() - length, 1e-13) << fill;
+  }
+}
+
 }  // namespace
 }  // namespace buoyancy

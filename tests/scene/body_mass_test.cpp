@@ -108,5 +108,12 @@ TEST(BodyMass, StiffnessOfWeightsIsTheirDerivative) {
   EXPECT_EQ(stiffness_of_weights(own, {}, about_B, q_WB, water), Mat6(Mat6::Zero()));
 }
 
+TEST(BodyMass, AddsTheLiquidOfAPistonAtEveryAttitude) {
+  const Scene scene = box_with(tank(0.25, "surface = \"none\"\nfill_axis = \"x\"\n"));
+  for (const Vec3& up_B : {Vec3(0, 0, 1), Vec3(0.48, -0.6, 0.64)}) {
+    expect_sum(scene, up_B, 600.0, {-0.125, 2, 3}, inertia_of_box(600.0, {0.75, 1, 1}), 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace buoyancy

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/format.h"
+#include "base/json.h"
 #include "scene/floating_bodies.h"
 #include "scene/scene_report.h"
 #include "tests/geometry/mesh_files.h"
@@ -65,6 +66,10 @@ TEST(Subdivision, ExplainsWhatIsWrong) {
        "a quaternion (w, x, y, z), not"},
       {"[[body.tank]]\nshape = { type = \"box\", sizes = [1, 1, 1] }\nfill = 0.5\n",
        "pool.toml:5: body 7, tank 0, shape: unknown key 'sizes'"},
+      {"[[body.tank]]\n" + kBox + "fill = 0.5\nsurface = \"flat\"\n", "level, none"},
+      {"[[body.tank]]\n" + kBox + "fill = 0.5\nsurface = \"none\"\nfill_axis = \"w\"\n", "x, y, z"},
+      {"[[body.tank]]\n" + kBox + "fill = 0.5\nfill_axis = \"x\"\n",
+       "a fill axis only with surface = \"none\""},
       {"[[body.tank]]\nname = \"ballast\"\n" + kBox + "liquid_volume = 1.5\n",
        "pool.toml:4: body 7, tank 'ballast', liquid_volume: 1.5 m^3; expected at most the tank's volume, 1 "
        "m^3"},
@@ -180,6 +185,28 @@ TEST(Subdivision, FloatsWithItsCompartmentsAndTanks) {
   const FloatingBody later = floating_body_of(body, body.prepared_mesh->mesh, mass, &damaged).value();
   EXPECT_EQ(later.volumes()[1].placed.signed_permeability, -1.0);
   EXPECT_EQ(later.total_mass(), 2800.0);
+}
+
+TEST(Subdivision, TurnsTheFillAxisWithItsTank) {
+  const std::string piston = "[[body.tank]]\nfill = 0.25\nsurface = \"none\"\n" + kBox;
+  const SceneDescription scene = parsed(
+      scene_with_crate("[[body.tank]]\nfill = 0.25\nsurface = \"level\"\n" + kBox + piston + piston +
+                       "fill_axis = \"-x\"\n" + piston + "fill_axis = \"x\"\norientation = [2, 0, 0, 2]\n"));
+  const std::vector<TankDescription>& tanks = scene.bodies[0].tanks;
+  ASSERT_EQ(tanks.size(), 4U);
+  EXPECT_FALSE(tanks[0].piston_axis_B);
+  EXPECT_EQ(tanks[1].piston_axis_B, Vec3(0, 0, 1)) << "the default";
+  EXPECT_EQ(tanks[2].piston_axis_B, Vec3(-1, 0, 0));
+  EXPECT_LE((tanks[3].piston_axis_B.value() - Vec3(0, 1, 0)).norm(), 1e-15);
+}
+
+TEST(Subdivision, ReportsThePistonOfATank) {
+  const Scene scene = scene_of(scene_with_crate("[[body.tank]]\nfill = 0.25\nsurface = \"none\"\n" + kBox +
+                                                "fill_axis = \"-x\"\n[[body.tank]]\nfill = 0.25\n" + kBox));
+  EXPECT_THAT(scene_report_text(scene), HasSubstr("piston along -x"));
+  const auto tanks = Json::parse(scene_report_json(scene)).at("bodies").at(0).at("tanks");
+  EXPECT_EQ(tanks.at(0).at("piston_axis"), Json({-1.0, 0.0, 0.0}));
+  EXPECT_FALSE(tanks.at(1).contains("piston_axis"));
 }
 
 }  // namespace

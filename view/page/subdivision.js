@@ -219,7 +219,7 @@ class SubdivisionDrawing {
       add_edges(mesh, subdivision_colours.compartment);
       return add(mesh, inner_material(subdivision_colours.compartment, 0.3), -2);
     });
-    this.tanks = description.tanks.map(({ mesh, capacity, density }) => {
+    this.tanks = description.tanks.map(({ mesh, capacity, density, piston_axis }) => {
       add_edges(mesh, subdivision_colours.tank);
       add(mesh, inner_material(subdivision_colours.tank, 0.12), -2);
       const part = (colour) => {
@@ -227,7 +227,7 @@ class SubdivisionDrawing {
         drawn.frustumCulled = false;
         return drawn;
       };
-      return { cut: new LevelCut(geometries[mesh]), centre: model.meshes[mesh].center, capacity, density, walls: part(subdivision_colours.liquid),
+      return { cut: new LevelCut(geometries[mesh]), centre: model.meshes[mesh].center, capacity, density, piston_axis, walls: part(subdivision_colours.liquid),
                surface: part(subdivision_colours.liquid_surface), shown: '' };
     });
   }
@@ -242,9 +242,10 @@ class SubdivisionDrawing {
     });
     if (this.tanks.length === 0) return;
     const up = up_W.clone().applyQuaternion(this.group.quaternion.clone().conjugate()).toArray();
-    this.tanks.forEach((tank, i) => this.fill(tank, up, liquid_volumes[i] || 0));
+    this.tanks.forEach((tank, i) => this.fill(tank, tank.piston_axis || up, liquid_volumes[i] || 0));
   }
 
+  // up: in the body's frame, or the axis of a piston.
   fill(tank, up, volume) {
     const shown = [...up, volume].join(' ');
     if (tank.shown === shown) return;
@@ -335,7 +336,7 @@ function show_observed_condition(box, description, now) {
 function fill_subdivision_legend(list, bodies) {
   const has = (kind) => bodies.some((body) => body[kind] && body[kind].length > 0);
   const entries = [...(has('compartments') ? [['compartment', 'compartment'], ['flooded', 'flooded compartment']] : []),
-                   ...(has('tanks') ? [['liquid', 'liquid in a tank'], ['liquid_surface', 'its free surface']] : [])];
+                   ...(has('tanks') ? [['liquid', 'liquid in a tank'], ['liquid_surface', 'its free surface, or a piston']] : [])];
   for (const [colour, text] of entries) {
     const item = document.createElement('li');
     const sample = document.createElement('i');
