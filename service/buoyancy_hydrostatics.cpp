@@ -1,4 +1,4 @@
-// buoyancy-hydrostatics: the program around equilibria, righting arms and hydrostatic tables.
+// buoyancy-hydrostatics: the program around equilibria, righting arms, hydrostatic tables and tank tables.
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,6 +17,7 @@
 #include "service/hydrostatics/hydrostatics_output.h"
 #include "service/hydrostatics/hydrostatics_page.h"
 #include "service/hydrostatics/loaded_body.h"
+#include "service/hydrostatics/tank_tables.h"
 #include "view/page/page_assets.h"
 
 namespace buoyancy::service {
@@ -120,6 +121,22 @@ Expected<Output> ballast_output(const CLI::App& app, const LoadedBody& loaded,
                 .missing = instability(*ballast)};
 }
 
+// Writes and prints the output, and returns the exit code.
+int write_output(const CLI::App& app, const HydrostaticsOptions& options, const Expected<Output>& output) {
+  const auto fail = [&app](const Error& error) {
+    print_error(app, error);
+    return kFailure;
+  };
+  if (!output) return fail(output.error());
+  for (const auto& [path, text] :
+       {std::pair{&options.csv, &output->csv}, std::pair{&options.html, &output->html}}) {
+    if (path->empty()) continue;
+    if (const Expected<void> written = write_file(*path, *text); !written) return fail(written.error());
+  }
+  if (!print_output(app, output->text)) return kFailure;
+  return output->missing ? fail(*output->missing) : kSuccess;
+}
+
 int run(int argc, char** argv) {
   CLI::App app("", "buoyancy-hydrostatics");
   HydrostaticsOptions options;
@@ -137,15 +154,25 @@ int run(int argc, char** argv) {
     if (!text) return fail(text.error(), kFailure);
     three = *std::move(text);
   }
-  const Expected<LoadedBody> loaded = load_body(options, *plan);
-  if (!loaded) return fail(loaded.error(), kUsageError);
-  if (const Expected<void> axes = plan_axes(options, loaded->axes, *plan); !axes) {
+  Expected<LoadedScene> scene = load_scene(options, *plan);
+  if (!scene) return fail(scene.error(), kUsageError);
+  if (const Expected<void> axes = plan_axes(options, scene->axes(), *plan); !axes) {
     return fail(axes.error(), kUsageError);
   }
-  plan->table.knows_mass = loaded->knows_mass;
   UpAxisCheck up;
   if (!options.mesh.empty()) up = {.up_B = plan->table.axes.up_B, .remedy = UpRemedy::kShipAxis};
-  for (const Warning& warning : mesh_warnings(loaded->scene, up)) print_warning(app, warning);
+  for (const Warning& warning : mesh_warnings(scene->scene, up)) print_warning(app, warning);
+  if (plan->command == HydrostaticsCommand::kTanks) {
+    const Expected<TankTables> tables = tank_tables(*scene, options, *plan);
+    if (!tables) return fail(tables.error(), kUsageError);
+    return write_output(
+        app, options,
+        Output{options.json ? json_lines(tank_tables_json(*tables)) : tank_tables_text(*tables),
+               tank_tables_csv(*tables), ""});
+  }
+  const Expected<LoadedBody> loaded = load_body(*std::move(scene), *plan);
+  if (!loaded) return fail(loaded.error(), kUsageError);
+  plan->table.knows_mass = loaded->knows_mass;
   if (loaded->assumed_mass) print_warning(app, *loaded->assumed_mass);
 
   Expected<Output> output;
@@ -162,16 +189,10 @@ int run(int argc, char** argv) {
     case HydrostaticsCommand::kBallast:
       output = ballast_output(app, *loaded, options, *plan);
       break;
+    case HydrostaticsCommand::kTanks:
+      break;  // written above
   }
-  if (!output) return fail(output.error(), kFailure);
-  for (const auto& [path, text] :
-       {std::pair{&options.csv, &output->csv}, std::pair{&options.html, &output->html}}) {
-    if (path->empty()) continue;
-    if (const Expected<void> written = write_file(*path, *text); !written)
-      return fail(written.error(), kFailure);
-  }
-  if (!print_output(app, output->text)) return kFailure;
-  return output->missing ? fail(*output->missing, kFailure) : kSuccess;
+  return write_output(app, options, output);
 }
 
 }  // namespace

@@ -19,11 +19,12 @@
 namespace buoyancy::service {
 namespace {
 
-constexpr std::array<std::pair<const char*, HydrostaticsCommand>, 4> kCommands{
+constexpr std::array<std::pair<const char*, HydrostaticsCommand>, 5> kCommands{
     {{"equilibrium", HydrostaticsCommand::kEquilibrium},
      {"table", HydrostaticsCommand::kTable},
      {"gz", HydrostaticsCommand::kRightingArms},
-     {"ballast", HydrostaticsCommand::kBallast}}};
+     {"ballast", HydrostaticsCommand::kBallast},
+     {"tanks", HydrostaticsCommand::kTanks}}};
 
 Expected<Vec3> parse_point(const std::string& subject, const std::string& text) {
   if (const std::optional<Vec3> point = parse_vector(text)) return *point;
@@ -54,13 +55,17 @@ Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand co
   };
   const std::vector<Use> uses{{"--unstable", {kEquilibrium}},
                               {"--draft", {kTable, kBallast}},
-                              {"--heel", {kRightingArms, kBallast}},
+                              {"--heel", {kRightingArms, kBallast, kTanks}},
                               {"--fixed-trim", {kRightingArms}},
                               {"--deck-edge", {kRightingArms}},
                               {"--downflooding", {kRightingArms}},
                               {"--body-mass", {kBallast}},
                               {"--at", {kBallast}},
-                              {"--along", {kBallast}}};
+                              {"--along", {kBallast}},
+                              {"--tank", {kTanks}},
+                              {"--sounding", {kTanks}},
+                              {"--sounding-at", {kTanks}},
+                              {"--html", {kEquilibrium, kTable, kRightingArms}}};
   for (const Use& use : uses) {
     if (app.count(use.option) == 0 || std::ranges::count(use.commands, command) > 0) continue;
     std::string commands;
@@ -70,11 +75,12 @@ Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand co
     }
     return make_error({use.option, "with another command", "the command " + commands, "", ""});
   }
-  const bool is_ballast = command == HydrostaticsCommand::kBallast;
-  const bool has_trim = command == HydrostaticsCommand::kTable || is_ballast || app.count("--fixed-trim") > 0;
+  const bool has_trim =
+      command == kTable || command == kBallast || command == kTanks || app.count("--fixed-trim") > 0;
   if (app.count("--trim") > 0 && !has_trim) {
     return make_error({"--trim", "without --fixed-trim",
-                       "the command table or ballast, or gz with --fixed-trim", "a body trims freely", ""});
+                       "the command table, ballast or tanks, or gz with --fixed-trim", "a body trims freely",
+                       ""});
   }
   if (command == HydrostaticsCommand::kTable && app.count("--draft") == 0) {
     return make_error(
@@ -123,6 +129,11 @@ Expected<void> plan_ranges(const HydrostaticsOptions& options, HydrostaticsPlan&
   if (!heels) return tl::unexpected(heels.error());
   if (Expected<void> checked = check_angles("--heel", *heels, 180.0); !checked) return checked;
   plan.heels = in_radians(*std::move(heels));
+  if (!options.soundings.empty()) {
+    Expected<std::vector<double>> soundings = parse_range("--sounding", options.soundings);
+    if (!soundings) return tl::unexpected(soundings.error());
+    plan.soundings = *std::move(soundings);
+  }
   if (options.fixed_trim) {
     if (plan.trims.size() != 1) {
       return make_error({"--trim", quote(options.trims), "one number with --fixed-trim", "", ""});
@@ -152,10 +163,26 @@ Expected<void> plan_points(const HydrostaticsOptions& options, HydrostaticsPlan&
   return {};
 }
 
+// Precondition: plan_ranges() was called.
+Expected<void> plan_tanks(const CLI::App& app, const HydrostaticsOptions& options, HydrostaticsPlan& plan) {
+  if (app.count("--heel") == 0) plan.heels = {0.0};
+  for (const double heel : plan.heels) {
+    // A level that a pipe along the ship's upward axis does not meet has no sounding.
+    if (Expected<void> checked = check_angles("--heel", {heel * kDegreesPerRadian}, 89.0); !checked) {
+      return checked;
+    }
+  }
+  if (options.sounding_at.empty()) return {};
+  const Expected<Vec3> foot = parse_point("--sounding-at", options.sounding_at);
+  if (!foot) return tl::unexpected(foot.error());
+  plan.sounding_foot_B = *foot;
+  return {};
+}
+
 }  // namespace
 
 bool needs_mass(HydrostaticsCommand command) {
-  return command != HydrostaticsCommand::kTable;
+  return command != HydrostaticsCommand::kTable && command != HydrostaticsCommand::kTanks;
 }
 
 Expected<void> plan_axes(const HydrostaticsOptions& options, const ShipAxes& own, HydrostaticsPlan& plan) {
@@ -207,7 +234,8 @@ std::string with_default(std::string type, double value) {
 void add_mesh_options(CLI::App& app, CLI::Option* mesh, HydrostaticsOptions& options) {
   constexpr double kMax = 1e9;
   add_scale_option(app, options.scale, mesh);
-  app.add_option("--density", options.density, "With --mesh: density of the water, kg/m^3")
+  app.add_option("--density", options.density,
+                 "With --mesh: density of the water, or of the tank's liquid, kg/m^3")
       ->needs(mesh)
       ->check(number_in(0.0, kMax, "kg/m^3"))
       ->option_text(with_default("RHO", options.density));
@@ -229,8 +257,8 @@ void add_mesh_options(CLI::App& app, CLI::Option* mesh, HydrostaticsOptions& opt
 void add_options(CLI::App& app, HydrostaticsOptions& options) {
   app.description(
       "Compute where and how a body floats: its equilibrium attitudes, righting arms, hydrostatic tables,\n"
-      "and where ballast belongs. Angles are in degrees, heel positive to starboard, trim positive by the "
-      "stern.\n" +
+      "where ballast belongs, and tank tables. Angles are in degrees, heel positive to starboard, trim\n"
+      "positive by the stern.\n" +
       exit_status_help(
           {.success = "on success, also if the body sinks",
            .failure =
@@ -278,10 +306,10 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
                  "table: drafts over the keel at midship, m; ballast: draft of the lowest point")
       ->option_text("FROM:TO:STEP");
   app.add_option("--trim", options.trims,
-                 "table: trims, degrees; gz: the fixed trim; ballast: the target [0]")
+                 "table, tanks: trims, degrees; gz: the fixed trim; ballast: the target [0]")
       ->option_text("FROM:TO:STEP [0]");
-  app.add_option("--heel", options.heels, "gz: heels, degrees; ballast: the target [0]")
-      ->option_text("FROM:TO:STEP [-180:180:5]");
+  app.add_option("--heel", options.heels, "gz, tanks: heels, degrees; ballast: the target [0]")
+      ->option_text("FROM:TO:STEP [gz: -180:180:5, tanks: 0]");
   app.add_flag("--fixed-trim", options.fixed_trim,
                "gz: fix the trim at that of --trim, instead of letting the body trim");
   app.add_option(
@@ -302,6 +330,19 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
                  "Repeatable")
       ->allow_extra_args(false)
       ->option_text("X,Y,Z");
+  app.add_option("--tank", options.tank,
+                 "tanks: the number of one of the body's tanks, from 0 (default: all of them)")
+      ->needs(scene)
+      ->option_text("N");
+  app.add_option("--sounding", options.soundings,
+                 "tanks: heights of the liquid over the foot of the sounding pipe along the ship's upward "
+                 "axis, m (default: 11 of the upright tank)")
+      ->option_text("FROM:TO:STEP");
+  app.add_option(
+         "--sounding-at", options.sounding_at,
+         "tanks: the foot of the sounding pipe in the frame of the mesh, m (default: at the height of "
+         "the tank's lowest point, under its centre)")
+      ->option_text("X,Y,Z");
   app.add_option("--csv", options.csv, "Also write the results to a CSV file")->option_text("FILE");
   CLI::Option* html = app.add_option("--html", options.html,
                                      "Also write the results as one HTML page, with plots and the hull")
@@ -311,10 +352,10 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
       ->needs(html)
       ->capture_default_str();
   app.add_flag("--json", options.json, "Print the results as JSON");
-  app.add_option("COMMAND", options.command, "equilibrium, table, gz or ballast")
+  app.add_option("COMMAND", options.command, "equilibrium, table, gz, ballast or tanks")
       ->required()
-      ->check(CLI::IsMember({"equilibrium", "table", "gz", "ballast"}))
-      ->option_text("equilibrium|table|gz|ballast");
+      ->check(CLI::IsMember({"equilibrium", "table", "gz", "ballast", "tanks"}))
+      ->option_text("equilibrium|table|gz|ballast|tanks");
 }
 
 namespace {
@@ -322,10 +363,6 @@ namespace {
 // Reads the target and the places, after the ranges of draft, heel and trim.
 Expected<void> plan_ballast(const CLI::App& app, const HydrostaticsOptions& options, HydrostaticsPlan& plan) {
   if (plan.command != HydrostaticsCommand::kBallast) return {};
-  if (app.count("--html") > 0) {
-    return make_error({"--html", "with ballast", "another command", "ballast has no page",
-                       "Put the mass and centre of mass that it prints into a scene, for equilibrium"});
-  }
   const auto one_of = [&app](const char* name, const std::vector<double>& values) -> Expected<double> {
     if (app.count(name) == 0) return 0.0;
     if (values.size() == 1) return values.front();
@@ -380,6 +417,11 @@ Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const Hydrosta
   plan.arms.keel = options.keel;
   if (const Expected<void> ranges = plan_ranges(options, plan); !ranges) {
     return tl::unexpected(ranges.error());
+  }
+  if (plan.command == HydrostaticsCommand::kTanks) {
+    if (const Expected<void> tanks = plan_tanks(app, options, plan); !tanks) {
+      return tl::unexpected(tanks.error());
+    }
   }
   if (const Expected<void> points = plan_points(options, plan); !points) {
     return tl::unexpected(points.error());

@@ -43,8 +43,11 @@ struct HydrostaticsOptions {
   bool fixed_trim = false;
   std::vector<std::string> ballast_places;  // X,Y,Z each
   std::string ballast_line;                 // an axis; empty: none
-  std::vector<std::string> deck_edges;      // X,Y,Z each
-  std::vector<std::string> downfloodings;   // X,Y,Z each
+  std::optional<std::size_t> tank;
+  std::string soundings;                   // FROM:TO:STEP
+  std::string sounding_at;                 // X,Y,Z
+  std::vector<std::string> deck_edges;     // X,Y,Z each
+  std::vector<std::string> downfloodings;  // X,Y,Z each
   std::filesystem::path csv;
   std::filesystem::path html;
   std::filesystem::path three = view::kThreeJs;
@@ -53,7 +56,7 @@ struct HydrostaticsOptions {
 
 void add_options(CLI::App& app, HydrostaticsOptions& options);
 
-enum class HydrostaticsCommand { kEquilibrium, kTable, kRightingArms, kBallast };
+enum class HydrostaticsCommand { kEquilibrium, kTable, kRightingArms, kBallast, kTanks };
 
 // The options, checked.
 struct HydrostaticsPlan {
@@ -65,9 +68,11 @@ struct HydrostaticsPlan {
   RightingArmOptions arms;
   ImmersionPoints points;
   BallastTask ballast;
-  std::vector<double> drafts;  // [m]
-  std::vector<double> trims;   // [rad]
-  std::vector<double> heels;   // [rad]
+  std::vector<double> drafts;           // [m]
+  std::vector<double> trims;            // [rad]
+  std::vector<double> heels;            // [rad]
+  std::vector<double> soundings;        // [m]; empty: from the empty to the full tank
+  std::optional<Vec3> sounding_foot_B;  // [m]
 };
 
 // Can the command do without the mass of the body?

@@ -21,6 +21,13 @@ double degrees(double radians) {
 
 }  // namespace
 
+std::string csv_row(const std::vector<double>& values) {
+  std::string row;
+  for (const double value : values) row += fmt::format("{}{:.17g}", row.empty() ? "" : ",", value);
+  row += '\n';
+  return row;
+}
+
 std::string outcome_sentence(FlotationOutcome outcome) {
   switch (outcome) {
     case FlotationOutcome::kFloats:
@@ -52,13 +59,6 @@ std::string reason(const Equilibrium& at) {
                         axis.y(), axis.z());
   }
   return text;
-}
-
-std::string csv_row(const std::vector<double>& values) {
-  std::string row;
-  for (const double value : values) row += fmt::format("{}{:.17g}", row.empty() ? "" : ",", value);
-  row += '\n';
-  return row;
 }
 
 Json arm_json(const RightingArm& arm) {

@@ -12,6 +12,9 @@
 
 namespace buoyancy::service {
 
+// The values as a line, with 17 significant digits.
+std::string csv_row(const std::vector<double>& values);
+
 std::string outcome_sentence(FlotationOutcome outcome);
 
 std::string equilibria_text(const Equilibria& equilibria);

@@ -35,47 +35,53 @@ SceneDescription mesh_scene(const HydrostaticsOptions& options, const MeshPlacem
 
 }  // namespace
 
-Expected<LoadedBody> load_body(const HydrostaticsOptions& options, const HydrostaticsPlan& plan) {
+Expected<LoadedScene> load_scene(const HydrostaticsOptions& options, const HydrostaticsPlan& plan) {
   Expected<Scene> scene =
       options.mesh.empty() ? Scene::load(options.scene) : Scene::prepare(mesh_scene(options, plan.placement));
   if (!scene) return tl::unexpected(scene.error());
   const Expected<const Body*> body = body_of(*scene, options.body);
   if (!body) return tl::unexpected(body.error());
+  std::string name = options.mesh.filename().string();
+  if (options.mesh.empty()) {
+    name = options.scene.filename().string().append(", ").append((*body)->name);
+  }
+  return LoadedScene{std::move(name), *std::move(scene), *body, options.mesh.empty()};
+}
+
+Expected<LoadedBody> load_body(LoadedScene loaded, const HydrostaticsPlan& plan) {
+  const Scene& scene = loaded.scene;
+  const Body& body = *loaded.body;
 
   Expected<RigidBodyMass> mass =
       RigidBodyMass{.mass = plan.mass.value_or(0.0), .center_of_mass_B = plan.center_of_mass_B};
-  if (options.mesh.empty()) mass = mass_of_body(**body, scene->water());
-  const DynamicsSpec& dynamics = (*body)->dynamics;
-  const bool knows_mass = options.mesh.empty() ? (dynamics.mass || dynamics.density) : plan.mass.has_value();
-  if (options.mesh.empty() && !dynamics.given) {
-    mass = make_error({scene->name() + ": body '" + (*body)->name + "'", "no section [body.client]",
+  const DynamicsSpec& dynamics = body.dynamics;
+  const bool knows_mass = loaded.is_of_scene ? dynamics.mass || dynamics.density : plan.mass.has_value();
+  if (loaded.is_of_scene) mass = mass_of_body(body, scene.water());
+  if (loaded.is_of_scene && !dynamics.given) {
+    mass = make_error({scene.name() + ": body '" + body.name + "'", "no section [body.client]",
                        "a section [body.client] with density, or with mass and center_of_mass",
                        "the service needs no mass, but what floats does",
                        "Add the section to the body in the scene file"});
   }
   if (!mass && needs_mass(plan.command)) return tl::unexpected(mass.error());
 
-  const HydrostaticMesh& prepared = (*body)->prepared_mesh->mesh;
+  const HydrostaticMesh& prepared = body.prepared_mesh->mesh;
   auto mesh = std::make_shared<HydrostaticMesh>(prepared);
   if (!mesh->tree) mesh->tree = build_moment_tree(*mesh);
   const bool uses_mass = mass && (knows_mass || needs_mass(plan.command));
   Expected<FloatingBody> floating =
-      uses_mass ? floating_body_of(**body, *mesh, *mass) : floating_hull_of(**body, *mesh);
+      uses_mass ? floating_body_of(body, *mesh, *mass) : floating_hull_of(body, *mesh);
   if (!floating) return tl::unexpected(floating.error());
-  std::string name = options.mesh.filename().string();
-  if (options.mesh.empty()) {
-    name = options.scene.filename().string().append(", ").append((*body)->name);
-  }
   std::optional<Warning> assumed;
-  if (options.mesh.empty() && uses_mass && !knows_mass) {
-    assumed = {scene->name() + ": body '" + (*body)->name + "'",
+  if (loaded.is_of_scene && uses_mass && !knows_mass) {
+    assumed = {scene.name() + ": body '" + body.name + "'",
                "a mass of " + format_number(mass->mass, 6) + " kg is assumed",
                "mass or density in [body.client]", "without them a body has half the density of the water",
                "Set one of them to what the body weighs"};
   }
-  const ShipAxes axes = options.mesh.empty() ? (*body)->axes : ShipAxes{};
-  return LoadedBody{std::move(name), *std::move(scene), std::move(mesh), *std::move(floating), axes,
-                    uses_mass,       std::move(assumed)};
+  return LoadedBody{
+      std::move(loaded.name), std::move(loaded.scene), std::move(mesh), *std::move(floating), uses_mass,
+      std::move(assumed)};
 }
 
 }  // namespace buoyancy::service

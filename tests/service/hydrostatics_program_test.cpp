@@ -573,6 +573,82 @@ TEST_F(HydrostaticsProgram, SaysWhyAPageCannotBeWritten) {
   EXPECT_EQ(run({"equilibrium", "--scene", file, "--three", "/dev/null"}).exit_code, 2);
 }
 
+TEST_F(HydrostaticsProgram, WritesTankTablesOfABodyWithoutAMass) {
+  const std::string tanks = R"([[body.tank]]
+name = "wing"
+shape = { type = "box", size = [6, 4, 2] }
+position = [1, 2, 3]
+density = 900
+fill = 0.5
+[[body.tank]]
+shape = { type = "box", size = [6, 4, 2] }
+fill = 0
+surface = "none"
+fill_axis = "x"
+)";
+  const std::string path =
+      dir_.write("tanks.toml", "[[body]]\nid = 1\nshape = { type = \"box\", size = [80, 20, 12] }\n" + tanks);
+  const FinishedProcess result =
+      run({"tanks", "--scene", path, "--trim", "0:1:1", "--json", "--csv", dir_.path("tanks.csv")});
+  ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+  const auto rows = csv_rows(read_file(dir_.path("tanks.csv")));
+  EXPECT_EQ(rows.at(0), (CsvRow{"tank", "trim", "heel", "sounding", "volume", "fill", "mass", "x", "y", "z",
+                                "fsm_t", "fsm_l"}));
+  ASSERT_EQ(rows.size(), 1U + 2U * 2U * 11U);
+  const std::vector<double> expected{0, 0, 0, 1, 24, 0.5, 21.6, 1, 2, 2.5, 28.8, 64.8};
+  const std::vector<double> half = numbers_of(rows[6]);
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(half[i], expected[i], 1e-12) << rows[0][i];
+  const auto json = nlohmann::json::parse(result.standard_output).at("tanks");
+  EXPECT_EQ(json.at(0).at("name"), "wing");
+  EXPECT_EQ(json.at(0).at("piston"), false);
+  EXPECT_TRUE(json.at(0).at("rows").at(0).at("x").is_null()) << "empty";
+  EXPECT_EQ(json.at(1).at("piston"), true);
+  EXPECT_EQ(json.at(1).at("rows").at(5).at("fsm_t"), 0.0);
+
+  const FinishedProcess one =
+      run({"tanks", "--scene", path, "--tank", "0", "--sounding", "0:2:0.5", "--heel", "5"});
+  ASSERT_EQ(one.exit_code, 0) << one.standard_error;
+  EXPECT_TRUE(contains(one.standard_output, "tank 0 'wing': 48 m^3")) << one.standard_output;
+  EXPECT_FALSE(contains(one.standard_output, "tank 1"));
+}
+
+TEST_F(HydrostaticsProgram, TakesAMeshAsATank) {
+  const std::string mesh =
+      dir_.write("tank.obj",
+                 "v 0 0 0\nv 4 0 0\nv 4 2 0\nv 0 2 0\nv 0 0 1\nv 4 0 1\nv 4 2 1\nv 0 2 1\n"
+                 "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const FinishedProcess result =
+      run({"tanks", "--mesh", mesh, "--density", "800", "--sounding", "0.5", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+  const auto at = nlohmann::json::parse(result.standard_output).at("tanks").at(0).at("rows").at(0);
+  EXPECT_NEAR(at.at("mass").get<double>(), 3.2, 1e-12);
+  EXPECT_NEAR(at.at("fsm_t").get<double>(), 0.8 * 4.0 * 8.0 / 12.0, 1e-12);
+}
+
+TEST_F(HydrostaticsProgram, SaysWhyThereIsNoTankTable) {
+  const std::string tank =
+      scene("", "[[body.tank]]\nshape = { type = \"box\", size = [1, 1, 1] }\nfill = 0\n");
+  const std::string none =
+      dir_.write("none.toml", "[[body]]\nid = 1\nshape = { type = \"box\", size = [1, 1, 1] }\n");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong{
+      {{"tanks", "--scene", none}, "a body without tanks"},
+      {{"tanks", "--scene", tank, "--tank", "1"}, "--tank: 1"},
+      {{"tanks", "--scene", tank, "--heel", "90"}, "--heel: 90 degrees"},
+      {{"tanks", "--scene", tank, "--sounding-at", "0,0"}, "--sounding-at"},
+      {{"tanks", "--scene", tank, "--sounding-at", "0,0,1"}, "a point lower than"},
+      {{"tanks", "--scene", tank, "--html", dir_.path("a.html")}, "--html: with another command"},
+      {{"gz", "--scene", tank, "--sounding", "1"}, "--sounding: with another command"},
+      {{"tanks", "--mesh",
+        dir_.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n"), "--open",
+        "dry_boundary"},
+       "an open mesh"}};
+  for (const auto& [arguments, expected] : wrong) {
+    const FinishedProcess result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2) << expected;
+    EXPECT_TRUE(contains(result.standard_error, expected)) << result.standard_error;
+  }
+}
+
 TEST_F(HydrostaticsProgram, RejectsWrongArguments) {
   const std::string good = ship();
   const std::vector<std::vector<std::string>> wrong{
