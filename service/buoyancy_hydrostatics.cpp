@@ -1,7 +1,9 @@
-// buoyancy-hydrostatics: the program around equilibria, righting arms, hydrostatic tables and tank tables.
+// buoyancy-hydrostatics: the program around equilibria, righting arms, ballast, and tables of hulls, tanks
+// and permissible KG.
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/App.hpp>
 
@@ -16,12 +18,17 @@
 #include "service/hydrostatics/hydrostatics_options.h"
 #include "service/hydrostatics/hydrostatics_output.h"
 #include "service/hydrostatics/hydrostatics_page.h"
+#include "service/hydrostatics/kg_limit.h"
 #include "service/hydrostatics/loaded_body.h"
 #include "service/hydrostatics/tank_tables.h"
 #include "view/page/page_assets.h"
 
 namespace buoyancy::service {
 namespace {
+
+bool has_weather(const HydrostaticsOptions& options) {
+  return options.exposure.windage_area > 0.0;
+}
 
 struct Output {
   std::string text;  // on standard output
@@ -53,6 +60,11 @@ PageSubject page_subject(const LoadedBody& loaded, const HydrostaticsPlan& plan)
   return {.name = loaded.name, .body = &loaded.body, .water = &loaded.water(), .axes = plan.table.axes};
 }
 
+double keel_of(const LoadedBody& loaded, const HydrostaticsPlan& plan) {
+  const Vec3& up_B = plan.table.axes.up_B;
+  return plan.table.keel.value_or(lowest_along(loaded.body, up_B) + up_B.dot(loaded.body.center_B()));
+}
+
 // three: the text of three.js for the page, empty if no page is requested.
 Output equilibrium_output(const LoadedBody& loaded, const HydrostaticsOptions& options,
                           const HydrostaticsPlan& plan, const std::string& three) {
@@ -65,7 +77,20 @@ Output equilibrium_output(const LoadedBody& loaded, const HydrostaticsOptions& o
   };
   const Equilibria found = find_equilibria(loaded.body, loaded.water(), search);
   progress.clear();
-  return {options.json ? json_lines(equilibria_json(found)) : equilibria_text(found), equilibria_csv(found),
+  const Water& water = loaded.water();
+  PointRows points{.points = plan.water_points, .rows = {}};
+  PartRows parts{.density = water.density, .names = {}, .rows = {}};
+  if (loaded.shares) parts.names = loaded.shares->names;
+  const double keel = keel_of(loaded, plan);
+  for (const Equilibrium& at : found.attitudes) {
+    const Vec3 up_B = at.pose.q_WB.conjugate() * water.up_W;
+    const double height = water.up_W.dot(at.pose.p_WB) - water.level;
+    points.rows.push_back(readings(points.points, search.axes, keel, up_B, height));
+    if (loaded.shares) parts.rows.push_back(displaced_parts(loaded.shares->body, at.pose, water));
+  }
+  return {options.json ? json_lines(equilibria_json(found, points, parts))
+                       : equilibria_text(found, points, parts),
+          equilibria_csv(found, points),
           three.empty() ? "" : equilibria_page(page_subject(loaded, plan), found, three)};
 }
 
@@ -74,6 +99,7 @@ Expected<Output> table_output(const LoadedBody& loaded, const HydrostaticsOption
   const Expected<HydrostaticTable> table = HydrostaticTable::make(loaded.body, loaded.water(), plan.table);
   if (!table) return tl::unexpected(table.error());
   TableRows rows;
+  PointRows points{.points = plan.water_points, .rows = {}};
   ProgressBar progress("rows");
   const auto total = static_cast<std::int64_t>(plan.trims.size() * plan.drafts.size());
   for (const double trim : plan.trims) {
@@ -85,13 +111,18 @@ Expected<Output> table_output(const LoadedBody& loaded, const HydrostaticsOption
                            "End the drafts below it"});
       }
       rows.push_back(*row);
+      const ShipAxes& axes = plan.table.axes;
+      const Vec3 up_B = up_at(axes, {0.0, trim});
+      const Vec3 on_water_B = table->midship() * axes.forward_B + (table->keel() + draft) * axes.up_B;
+      points.rows.push_back(readings(points.points, axes, table->keel(), up_B, -up_B.dot(on_water_B)));
       const auto done = static_cast<std::int64_t>(rows.size());
       progress.update(done, total, done);
     }
   }
   progress.clear();
   return Output{
-      options.json ? json_lines(table_json(*table, rows)) : table_text(*table, rows), table_csv(rows),
+      options.json ? json_lines(table_json(*table, rows, points)) : table_text(*table, rows, points),
+      table_csv(rows, points),
       three.empty() ? "" : table_page(page_subject(loaded, plan), *table, rows, plan.drafts.size(), three)};
 }
 
@@ -100,12 +131,26 @@ Expected<Output> righting_output(const LoadedBody& loaded, const HydrostaticsOpt
   ProgressBar progress("heels");
   RightingArmOptions arms = plan.arms;
   arms.progress = [&progress](std::int64_t done, std::int64_t total) { progress.update(done, total, done); };
-  const auto results = righting_results(loaded.body, loaded.water(), plan.heels, plan.points, arms);
+  std::optional<HydrostaticTable> table;
+  WeatherInputs weather{.exposure = options.exposure};
+  if (has_weather(options)) {
+    Expected<HydrostaticTable> made = HydrostaticTable::make(loaded.body, loaded.water(), plan.table);
+    if (!made) return tl::unexpected(made.error());
+    weather.table = &table.emplace(*std::move(made));
+  }
+  const auto results = righting_results(loaded.body, loaded.water(), plan.heels, plan.points, arms,
+                                        table ? &weather : nullptr);
   progress.clear();
   if (!results) return make_error(no_balance("0 degrees"));
   if (results->curve.points.empty()) return tl::unexpected(*missing_heels(results->curve));
-  return Output{options.json ? json_lines(righting_json(*results)) : righting_text(*results),
-                righting_csv(*results),
+  PointRows points{.points = plan.water_points, .rows = {}};
+  const double keel = keel_of(loaded, plan);
+  for (const auto& [arm, area] : results->curve.points) {
+    const Vec3 up_B = up_at(arms.axes, {arm.heel, arm.trim});
+    points.rows.push_back(readings(points.points, arms.axes, keel, up_B, arm.height));
+  }
+  return Output{options.json ? json_lines(righting_json(*results, points)) : righting_text(*results, points),
+                righting_csv(*results, points),
                 three.empty() ? "" : righting_page(page_subject(loaded, plan), *results, plan.arms, three),
                 missing_heels(results->curve)};
 }
@@ -119,6 +164,37 @@ Expected<Output> ballast_output(const CLI::App& app, const LoadedBody& loaded,
                 .csv = ballast_csv(*ballast),
                 .html = "",
                 .missing = instability(*ballast)};
+}
+
+Expected<Output> kg_limit_output(const LoadedBody& loaded, const HydrostaticsOptions& options,
+                                 const HydrostaticsPlan& plan) {
+  const Expected<HydrostaticTable> table = HydrostaticTable::make(loaded.body, loaded.water(), plan.table);
+  if (!table) return tl::unexpected(table.error());
+  const WeatherInputs weather{.exposure = options.exposure, .table = &*table};
+  std::vector<KgLimit> limits;
+  ProgressBar progress("drafts");
+  const auto total = static_cast<std::int64_t>(plan.trims.size() * plan.drafts.size());
+  for (const double trim : plan.trims) {
+    for (const double draft : plan.drafts) {
+      const std::optional<KgLimit> limit =
+          kg_limit(loaded.body, loaded.water(), *table, draft, trim, plan.points, plan.arms,
+                   has_weather(options) ? &weather : nullptr);
+      if (!limit) {
+        return make_error(
+            {"draft " + CLI::detail::to_string(draft) + " m", "no result",
+             "a draft at which the hull displaces water and has a waterplane, and the edge of an "
+             "open mesh is dry",
+             "", "Choose drafts between the keel and the deck"});
+      }
+      limits.push_back(*limit);
+      const auto done = static_cast<std::int64_t>(limits.size());
+      progress.update(done, total, done);
+    }
+  }
+  progress.clear();
+  return Output{.text = options.json ? json_lines(kg_limits_json(limits)) : kg_limits_text(limits),
+                .csv = kg_limits_csv(limits),
+                .html = ""};
 }
 
 // Writes and prints the output, and returns the exit code.
@@ -191,6 +267,9 @@ int run(int argc, char** argv) {
       break;
     case HydrostaticsCommand::kTanks:
       break;  // written above
+    case HydrostaticsCommand::kKgLimit:
+      output = kg_limit_output(*loaded, options, *plan);
+      break;
   }
   return write_output(app, options, output);
 }

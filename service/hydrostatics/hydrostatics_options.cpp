@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -19,12 +20,13 @@
 namespace buoyancy::service {
 namespace {
 
-constexpr std::array<std::pair<const char*, HydrostaticsCommand>, 5> kCommands{
+constexpr std::array<std::pair<const char*, HydrostaticsCommand>, 6> kCommands{
     {{"equilibrium", HydrostaticsCommand::kEquilibrium},
      {"table", HydrostaticsCommand::kTable},
      {"gz", HydrostaticsCommand::kRightingArms},
      {"ballast", HydrostaticsCommand::kBallast},
-     {"tanks", HydrostaticsCommand::kTanks}}};
+     {"tanks", HydrostaticsCommand::kTanks},
+     {"kg-limit", HydrostaticsCommand::kKgLimit}}};
 
 Expected<Vec3> parse_point(const std::string& subject, const std::string& text) {
   if (const std::optional<Vec3> point = parse_vector(text)) return *point;
@@ -46,7 +48,11 @@ Expected<void> check_angles(const std::string& subject, const std::vector<double
   return {};
 }
 
-// Refuses options that the command does not use, and a table without --draft.
+const char* name_of(HydrostaticsCommand command) {
+  return kCommands[static_cast<std::size_t>(command)].first;
+}
+
+// Refuses options that the command does not use, and a command that lacks one that it needs.
 Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand command) {
   using enum HydrostaticsCommand;
   struct Use {
@@ -54,11 +60,14 @@ Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand co
     std::vector<HydrostaticsCommand> commands;
   };
   const std::vector<Use> uses{{"--unstable", {kEquilibrium}},
-                              {"--draft", {kTable, kBallast}},
+                              {"--draft", {kTable, kBallast, kKgLimit}},
                               {"--heel", {kRightingArms, kBallast, kTanks}},
-                              {"--fixed-trim", {kRightingArms}},
-                              {"--deck-edge", {kRightingArms}},
-                              {"--downflooding", {kRightingArms}},
+                              {"--fixed-trim", {kRightingArms, kKgLimit}},
+                              {"--deck-edge", {kRightingArms, kKgLimit}},
+                              {"--downflooding", {kRightingArms, kKgLimit}},
+                              {"--windage-area", {kRightingArms, kKgLimit}},
+                              {"--marks", {kEquilibrium, kTable, kRightingArms}},
+                              {"--freeboard", {kEquilibrium, kTable, kRightingArms}},
                               {"--body-mass", {kBallast}},
                               {"--at", {kBallast}},
                               {"--along", {kBallast}},
@@ -69,22 +78,22 @@ Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand co
   for (const Use& use : uses) {
     if (app.count(use.option) == 0 || std::ranges::count(use.commands, command) > 0) continue;
     std::string commands;
-    for (const HydrostaticsCommand one : use.commands) {
-      if (!commands.empty()) commands += " or ";
-      commands += kCommands[static_cast<std::size_t>(one)].first;
+    for (const HydrostaticsCommand other : use.commands) {
+      commands += (commands.empty() ? "the command " : " or ") + std::string(name_of(other));
     }
-    return make_error({use.option, "with another command", "the command " + commands, "", ""});
+    return make_error({use.option, "with another command", commands, "", ""});
   }
+  const bool is_by_draft = command == kTable || command == kKgLimit;
   const bool has_trim =
-      command == kTable || command == kBallast || command == kTanks || app.count("--fixed-trim") > 0;
+      is_by_draft || command == kBallast || command == kTanks || app.count("--fixed-trim") > 0;
   if (app.count("--trim") > 0 && !has_trim) {
     return make_error({"--trim", "without --fixed-trim",
-                       "the command table, ballast or tanks, or gz with --fixed-trim", "a body trims freely",
-                       ""});
+                       "the command table, kg-limit, ballast or tanks, or gz with --fixed-trim",
+                       "a body trims freely", ""});
   }
-  if (command == HydrostaticsCommand::kTable && app.count("--draft") == 0) {
-    return make_error(
-        {"table", "no --draft", "--draft FROM:TO:STEP in metres", "", "For instance --draft 1:5:0.5"});
+  if (is_by_draft && app.count("--draft") == 0) {
+    return make_error({name_of(command), "no --draft", "--draft FROM:TO:STEP in metres", "",
+                       "For instance --draft 1:5:0.5"});
   }
   return {};
 }
@@ -153,6 +162,39 @@ Expected<std::vector<Vec3>> parse_points(const std::string& subject, const std::
   return points;
 }
 
+// NAME=X,Y
+Expected<DraftMark> parse_mark(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  DraftMark mark{.name = text.substr(0, equals)};
+  const auto in_name = [](char c) {
+    return c == '_' || c == '-' || std::isalnum(static_cast<unsigned char>(c));
+  };
+  if (equals != std::string::npos && !mark.name.empty() && std::ranges::all_of(mark.name, in_name)) {
+    const std::vector<std::string_view> parts = split(std::string_view(text).substr(equals + 1), ',');
+    if (parts.size() == 2 && parse_finite(parts[0], mark.forward) && parse_finite(parts[1], mark.port)) {
+      return mark;
+    }
+  }
+  return make_error({"--marks", quote(text),
+                     "NAME=X,Y: a name of letters, digits, _ and -, and metres forward and to port", "",
+                     "For instance --marks aft=-40,0 fwd=40,0"});
+}
+
+Expected<void> plan_water_points(const HydrostaticsOptions& options, WaterPoints& points) {
+  for (const std::string& text : options.marks) {
+    const Expected<DraftMark> mark = parse_mark(text);
+    if (!mark) return tl::unexpected(mark.error());
+    if (std::ranges::count(points.marks, mark->name, &DraftMark::name) > 0) {
+      return make_error({"--marks", "two marks " + quote(mark->name), "a name for each mark", "", ""});
+    }
+    points.marks.push_back(*mark);
+  }
+  Expected<std::vector<Vec3>> freeboards = parse_points("--freeboard", options.freeboards);
+  if (!freeboards) return tl::unexpected(freeboards.error());
+  points.freeboards_B = *std::move(freeboards);
+  return {};
+}
+
 Expected<void> plan_points(const HydrostaticsOptions& options, HydrostaticsPlan& plan) {
   Expected<std::vector<Vec3>> deck_edge = parse_points("--deck-edge", options.deck_edges);
   if (!deck_edge) return tl::unexpected(deck_edge.error());
@@ -182,7 +224,8 @@ Expected<void> plan_tanks(const CLI::App& app, const HydrostaticsOptions& option
 }  // namespace
 
 bool needs_mass(HydrostaticsCommand command) {
-  return command != HydrostaticsCommand::kTable && command != HydrostaticsCommand::kTanks;
+  using enum HydrostaticsCommand;
+  return command == kEquilibrium || command == kRightingArms || command == kBallast;
 }
 
 Expected<void> plan_axes(const HydrostaticsOptions& options, const ShipAxes& own, HydrostaticsPlan& plan) {
@@ -252,18 +295,46 @@ void add_mesh_options(CLI::App& app, CLI::Option* mesh, HydrostaticsOptions& opt
       ->option_text("refuse|dry_boundary [refuse]");
 }
 
+// Adds what the weather criterion needs.
+void add_weather_options(CLI::App& app, WeatherExposure& exposure) {
+  constexpr double kMax = 1e9;
+  CLI::Option* area =
+      app.add_option("--windage-area", exposure.windage_area,
+                     "gz, kg-limit: lateral area over the water, m^2; also evaluate the weather "
+                     "criterion of the 2008 IS Code")
+          ->check(number_in(0.0, kMax, "m^2"))
+          ->option_text("A");
+  CLI::Option* lever = app.add_option("--windage-lever", exposure.windage_lever,
+                                      "Height of the centre of that area over the centre of the lateral area "
+                                      "under water, or over half the draft, m")
+                           ->needs(area)
+                           ->check(number_in(0.0, kMax, "m"))
+                           ->option_text("Z");
+  area->needs(lever);
+  app.add_option("--wind-pressure", exposure.wind_pressure, "Pressure of the wind, Pa")
+      ->needs(area)
+      ->check(number_in(0.0, kMax, "Pa"))
+      ->option_text(with_default("P", exposure.wind_pressure));
+  app.add_option("--bilge-keel-area", exposure.bilge_keel_area,
+                 "Area of the bilge keels, and of the side view of a bar keel, m^2")
+      ->needs(area)
+      ->check(number_in(0.0, kMax, "m^2"))
+      ->option_text(with_default("AK", exposure.bilge_keel_area));
+  app.add_flag("--sharp-bilges", exposure.sharp_bilges, "The bilges are sharp")->needs(area);
+}
+
 }  // namespace
 
 void add_options(CLI::App& app, HydrostaticsOptions& options) {
   app.description(
       "Compute where and how a body floats: its equilibrium attitudes, righting arms, hydrostatic tables,\n"
-      "where ballast belongs, and tank tables. Angles are in degrees, heel positive to starboard, trim\n"
-      "positive by the stern.\n" +
+      "permissible KG, where ballast belongs, and tank tables. Angles are in degrees, heel positive to\n"
+      "starboard, trim positive by the stern.\n" +
       exit_status_help(
           {.success = "on success, also if the body sinks",
            .failure =
-               "on a runtime error, if a righting arm or a row has no result, or if no stable ballast is\n"
-               "found",
+               "on a runtime error, if a righting arm, a row or a limit has no result, or if no stable\n"
+               "ballast is found",
            .usage_error = "on invalid arguments, scene or mesh"}));
   app.set_version_flag("--version", "buoyancy-hydrostatics " BUOYANCY_VERSION);
   auto* from = app.add_option_group("body", "Input geometry (exactly one)");
@@ -303,15 +374,15 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
       ->option_text("X");
   app.add_flag("--unstable", options.unstable, "equilibrium: also report unstable attitudes");
   app.add_option("--draft", options.drafts,
-                 "table: drafts over the keel at midship, m; ballast: draft of the lowest point")
+                 "table, kg-limit: drafts over the keel at midship, m; ballast: draft of the lowest point")
       ->option_text("FROM:TO:STEP");
   app.add_option("--trim", options.trims,
-                 "table, tanks: trims, degrees; gz: the fixed trim; ballast: the target [0]")
+                 "table, kg-limit, tanks: trims, degrees; gz: the fixed trim; ballast: the target [0]")
       ->option_text("FROM:TO:STEP [0]");
   app.add_option("--heel", options.heels, "gz, tanks: heels, degrees; ballast: the target [0]")
       ->option_text("FROM:TO:STEP [gz: -180:180:5, tanks: 0]");
   app.add_flag("--fixed-trim", options.fixed_trim,
-               "gz: fix the trim at that of --trim, instead of letting the body trim");
+               "gz, kg-limit: fix the trim at that of --trim, instead of letting the body trim");
   app.add_option(
          "--at", options.ballast_places,
          "ballast: where it is, in the frame of the mesh, m; twice: split it. Default: find the place")
@@ -321,12 +392,14 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
                  "ballast: find the place on the line along this axis through --at, or else the origin")
       ->option_text("x|y|z");
   app.add_option("--deck-edge", options.deck_edges,
-                 "gz: a point of the deck edge in the frame of the mesh, m; report the heels to either side "
+                 "gz, kg-limit: a point of the deck edge in the frame of the mesh, m; report the heels to "
+                 "either side "
                  "at which the first goes under water. Repeatable")
       ->allow_extra_args(false)
       ->option_text("X,Y,Z");
   app.add_option("--downflooding", options.downfloodings,
-                 "gz: an opening that lets water in; the same, and the curve of the criteria ends there. "
+                 "gz, kg-limit: an opening that lets water in; the same, and the curve of the criteria ends "
+                 "there. "
                  "Repeatable")
       ->allow_extra_args(false)
       ->option_text("X,Y,Z");
@@ -343,6 +416,17 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
          "tanks: the foot of the sounding pipe in the frame of the mesh, m (default: at the height of "
          "the tank's lowest point, under its centre)")
       ->option_text("X,Y,Z");
+  app.add_option("--marks", options.marks,
+                 "equilibrium, gz, table: print the draft at this place of the base line, metres along the "
+                 "forward and port axes. Several, and repeatable")
+      ->option_text("NAME=X,Y ...");
+  app.add_option(
+         "--freeboard", options.freeboards,
+         "equilibrium, gz, table: print the height over the water of a point in the frame of the mesh, "
+         "m. Repeatable")
+      ->allow_extra_args(false)
+      ->option_text("X,Y,Z");
+  add_weather_options(app, options.exposure);
   app.add_option("--csv", options.csv, "Also write the results to a CSV file")->option_text("FILE");
   CLI::Option* html = app.add_option("--html", options.html,
                                      "Also write the results as one HTML page, with plots and the hull")
@@ -352,10 +436,10 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
       ->needs(html)
       ->capture_default_str();
   app.add_flag("--json", options.json, "Print the results as JSON");
-  app.add_option("COMMAND", options.command, "equilibrium, table, gz, ballast or tanks")
+  app.add_option("COMMAND", options.command, "equilibrium, table, gz, ballast, tanks or kg-limit")
       ->required()
-      ->check(CLI::IsMember({"equilibrium", "table", "gz", "ballast", "tanks"}))
-      ->option_text("equilibrium|table|gz|ballast|tanks");
+      ->check(CLI::IsMember({"equilibrium", "table", "gz", "ballast", "tanks", "kg-limit"}))
+      ->option_text("equilibrium|table|gz|ballast|tanks|kg-limit");
 }
 
 namespace {
@@ -424,6 +508,9 @@ Expected<HydrostaticsPlan> plan_hydrostatics(const CLI::App& app, const Hydrosta
     }
   }
   if (const Expected<void> points = plan_points(options, plan); !points) {
+    return tl::unexpected(points.error());
+  }
+  if (const Expected<void> points = plan_water_points(options, plan.water_points); !points) {
     return tl::unexpected(points.error());
   }
   if (const Expected<void> ballast = plan_ballast(app, options, plan); !ballast) {

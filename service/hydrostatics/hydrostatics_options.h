@@ -15,6 +15,7 @@
 #include "flotation/righting_arms.h"
 #include "scene/scene_file.h"
 #include "service/hydrostatics/righting_results.h"
+#include "service/hydrostatics/water_points.h"
 #include "view/page/page_assets.h"
 
 namespace buoyancy::service {
@@ -48,6 +49,9 @@ struct HydrostaticsOptions {
   std::string sounding_at;                 // X,Y,Z
   std::vector<std::string> deck_edges;     // X,Y,Z each
   std::vector<std::string> downfloodings;  // X,Y,Z each
+  std::vector<std::string> marks;          // NAME=X,Y each
+  std::vector<std::string> freeboards;     // X,Y,Z each
+  WeatherExposure exposure;                // windage_area 0: none is given
   std::filesystem::path csv;
   std::filesystem::path html;
   std::filesystem::path three = view::kThreeJs;
@@ -56,7 +60,7 @@ struct HydrostaticsOptions {
 
 void add_options(CLI::App& app, HydrostaticsOptions& options);
 
-enum class HydrostaticsCommand { kEquilibrium, kTable, kRightingArms, kBallast, kTanks };
+enum class HydrostaticsCommand { kEquilibrium, kTable, kRightingArms, kBallast, kTanks, kKgLimit };
 
 // The options, checked.
 struct HydrostaticsPlan {
@@ -67,6 +71,7 @@ struct HydrostaticsPlan {
   HydrostaticTableOptions table;
   RightingArmOptions arms;
   ImmersionPoints points;
+  WaterPoints water_points;
   BallastTask ballast;
   std::vector<double> drafts;           // [m]
   std::vector<double> trims;            // [rad]

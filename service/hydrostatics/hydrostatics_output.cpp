@@ -61,6 +61,135 @@ std::string reason(const Equilibrium& at) {
   return text;
 }
 
+// The further columns of a CSV header.
+std::string csv_columns(const PointRows& points) {
+  std::string text;
+  for (const std::string& name : column_names(points.points)) text += "," + name;
+  return text;
+}
+
+std::vector<double> joined(std::vector<double> values, const PointRows& points, std::size_t row) {
+  if (!points.rows.empty()) {
+    values.insert(values.end(), points.rows[row].begin(), points.rows[row].end());
+  }
+  return values;
+}
+
+// A table of the readings alone, after one column that names the rows.
+std::string points_text(const PointRows& points, const std::string& head, const std::vector<double>& rows) {
+  const std::vector<std::string> names = column_names(points.points);
+  if (names.empty()) return "";
+  std::string text = fmt::format("\n{:>10}", head);
+  for (const std::string& name : names) text += fmt::format(" {:>15}", name);
+  text += " (m)\n";
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    text += fmt::format("{:>10.5g}", rows[i]);
+    for (const double value : points.rows[i]) text += fmt::format(" {:>15.6f}", value);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string parts_text(const PartRows& parts, std::size_t row) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.names.size(); ++i) {
+    const DisplacedPart& part = parts.rows[row][i];
+    text += fmt::format("           {} displaces {:.6g} m^3, {:.6g} kg, centre ({:.6g}, {:.6g}, {:.6g}) m\n",
+                        parts.names[i], part.volume, parts.density * part.volume, part.center_B.x(),
+                        part.center_B.y(), part.center_B.z());
+  }
+  return text;
+}
+
+Json parts_json(const PartRows& parts, std::size_t row) {
+  Json entries = Json::array();
+  for (std::size_t i = 0; i < parts.names.size(); ++i) {
+    const DisplacedPart& part = parts.rows[row][i];
+    entries.push_back(
+        {{"name", parts.names[i]},
+         {"volume", part.volume},
+         {"mass", parts.density * part.volume},
+         {"center_of_buoyancy", part.volume != 0.0 ? std::optional(part.center_B) : std::nullopt}});
+  }
+  return entries;
+}
+
+// In the order of the code, with its symbols.
+struct WeatherValue {
+  const char* name;
+  const char* symbol;
+  const char* unit;
+  std::optional<double> value;
+};
+
+std::vector<WeatherValue> values_of(const WeatherCriterion& weather) {
+  const auto heel = [](const std::optional<double>& radians) {
+    return radians ? std::optional(*radians * kDegreesPerRadian) : std::nullopt;
+  };
+  const RollForm& form = weather.form;
+  const RollToWindward& roll = weather.roll;
+  return {{"length_wl", "Lwl", "m", form.length_wl},
+          {"breadth", "B", "m", form.breadth},
+          {"draft", "d", "m", form.draft},
+          {"block", "Cb", "", form.block},
+          {"kg", "KG", "m", form.kg},
+          {"og", "OG", "m", form.kg - form.draft},
+          {"gm", "GM", "m", form.gm},
+          {"lw1", "lw1", "m", weather.lw1},
+          {"lw2", "lw2", "m", weather.lw2},
+          {"k", "k", "", roll.k},
+          {"x1", "X1", "", roll.x1},
+          {"x2", "X2", "", roll.x2},
+          {"r", "r", "", roll.r},
+          {"c", "C", "", roll.c},
+          {"period", "T", "s", roll.period},
+          {"s", "s", "", roll.s},
+          {"phi0", "φ0", "degrees", heel(weather.steady_heel)},
+          {"phi0_limit", "φ0 at most", "degrees", weather.steady_limit * kDegreesPerRadian},
+          {"phi1", "φ1", "degrees", roll.angle * kDegreesPerRadian},
+          {"gust_heel", "GZ = lw2", "degrees", heel(weather.gust_heel)},
+          {"phi_c", "φc", "degrees", heel(weather.second_intercept)},
+          {"phi2", "φ2", "degrees", weather.gust_heel ? heel(weather.end_heel) : std::nullopt},
+          {"area_a", "a", "m rad", weather.gust_heel ? std::optional(weather.area_a) : std::nullopt},
+          {"area_b", "b", "m rad", weather.gust_heel ? std::optional(weather.area_b) : std::nullopt}};
+}
+
+std::vector<std::string> limits_of_validity(const RollToWindward& roll) {
+  std::vector<std::string> outside;
+  if (!roll.breadth_in_range) outside.emplace_back("B/d is not below 3.5");
+  if (!roll.kg_in_range) outside.emplace_back("KG/d - 1 is not between -0.3 and 0.5");
+  if (!roll.period_in_range) outside.emplace_back("T is not below 20 s");
+  return outside;
+}
+
+std::string weather_text(const RightingResults& results) {
+  if (!results.asks_weather) return "";
+  std::string text = "\n2008 IS Code A 2.3, wind and roll, to starboard (not a class approval):\n";
+  if (!results.weather) return text + "not known: a righting arm that it needs has no result\n";
+  for (const WeatherValue& value : values_of(*results.weather)) {
+    text += fmt::format("{:>48}{:>12} {}\n", value.symbol,
+                        value.value ? fmt::format("{:.6g}", *value.value) : "none", value.unit);
+  }
+  const auto verdict = [](bool met) { return met ? "met" : "NOT met"; };
+  text += fmt::format("{:>48}  {}\n{:>48}  {}\n", "φ0 not above its limit",
+                      verdict(results.weather->is_steady_heel_met()), "area b not below area a",
+                      verdict(results.weather->is_area_met()));
+  for (const std::string& limit : limits_of_validity(results.weather->roll)) {
+    text += "outside the ships of the formulae (2.3.5): " + limit + "\n";
+  }
+  return text;
+}
+
+Json weather_json(const std::optional<WeatherCriterion>& weather) {
+  if (!weather) return nullptr;
+  Json json{{"source", "2008 IS Code A 2.3, to starboard; not a class approval"}};
+  for (const WeatherValue& value : values_of(*weather)) json[value.name] = value.value;
+  json["phi0_met"] = weather->is_steady_heel_met();
+  json["areas_met"] = weather->is_area_met();
+  json["outside"] = limits_of_validity(weather->roll);
+  return json;
+}
+
 Json arm_json(const RightingArm& arm) {
   return {{"heel", degrees(arm.heel)},
           {"trim", degrees(arm.trim)},
@@ -101,12 +230,13 @@ std::optional<double> in_degrees(std::optional<double> radians) {
 
 }  // namespace
 
-std::string equilibria_text(const Equilibria& equilibria) {
+std::string equilibria_text(const Equilibria& equilibria, const PointRows& points, const PartRows& parts) {
   std::string text = outcome_sentence(equilibria.outcome) + "\n";
   if (equilibria.attitudes.empty()) return text;
   text += fmt::format("{:>10}{:>12}{:>12}{:>12}{:>12}{:>12}{:>16}{:>14}{:>14}\n", "", "heel, deg",
                       "trim, deg", "draft, m", "GM, m", "GM, m", "energy, J", "force/bound", "torque/bound");
-  for (const Equilibrium& at : equilibria.attitudes) {
+  for (std::size_t row = 0; row < equilibria.attitudes.size(); ++row) {
+    const Equilibrium& at = equilibria.attitudes[row];
     const std::array<double, 2>& heights = at.state.hydrostatics.metacentric_heights;
     text += fmt::format("{:>10}{:>12.4f}{:>12.4f}{:>12.6g}{:>12.5g}{:>12.5g}{:>16.8g}{:>14.2g}{:>14.2g}\n",
                         at.is_stable() ? "stable" : "unstable", degrees(at.angles.heel),
@@ -116,14 +246,19 @@ std::string equilibria_text(const Equilibria& equilibria) {
       text += "           one of a curve of attitudes of equal energy\n";
     if (at.family == AttitudeFamily::kSphere) text += "           any attitude has the same energy\n";
     if (!at.is_stable()) text += fmt::format("           unstable: {}\n", reason(at));
+    if (!parts.rows.empty()) text += parts_text(parts, row);
   }
   if (equilibria.is_truncated) text += "There are more attitudes, of higher energy.\n";
+  std::vector<double> heels;
+  for (const Equilibrium& at : equilibria.attitudes) heels.push_back(degrees(at.angles.heel));
+  text += points_text(points, "heel, deg", heels);
   return text;
 }
 
-Json equilibria_json(const Equilibria& equilibria) {
+Json equilibria_json(const Equilibria& equilibria, const PointRows& points, const PartRows& parts) {
   Json attitudes = Json::array();
-  for (const Equilibrium& at : equilibria.attitudes) {
+  for (std::size_t row = 0; row < equilibria.attitudes.size(); ++row) {
+    const Equilibrium& at = equilibria.attitudes[row];
     Json entry{{"stable", at.is_stable()},
                {"position", at.pose.p_WB},
                {"quaternion_wxyz", at.pose.q_WB},
@@ -140,6 +275,8 @@ Json equilibria_json(const Equilibria& equilibria) {
                {"family", to_string(at.family)},
                {"displacement_volume", at.state.hydrostatics.volume}};
     if (!at.is_stable()) entry["reason"] = reason(at);
+    if (!points.rows.empty()) add_readings(entry, points.points, points.rows[row]);
+    if (!parts.rows.empty()) entry["parts"] = parts_json(parts, row);
     attitudes.push_back(std::move(entry));
   }
   return {{"outcome", to_string(equilibria.outcome)},
@@ -147,22 +284,25 @@ Json equilibria_json(const Equilibria& equilibria) {
           {"truncated", equilibria.is_truncated}};
 }
 
-std::string equilibria_csv(const Equilibria& equilibria) {
+std::string equilibria_csv(const Equilibria& equilibria, const PointRows& points) {
   std::string text =
       "stable,heel,trim,draft,px,py,pz,qw,qx,qy,qz,gm_min,gm_max,energy,residual_force,residual_torque,"
-      "force_bound,torque_bound\n";
-  for (const Equilibrium& at : equilibria.attitudes) {
+      "force_bound,torque_bound" +
+      csv_columns(points) + "\n";
+  for (std::size_t row = 0; row < equilibria.attitudes.size(); ++row) {
+    const Equilibrium& at = equilibria.attitudes[row];
     const Eigen::Quaterniond& q = at.pose.q_WB;
     const std::array<double, 2>& heights = at.state.hydrostatics.metacentric_heights;
-    text += csv_row({at.is_stable() ? 1.0 : 0.0, degrees(at.angles.heel), degrees(at.angles.trim), at.draft,
-                     at.pose.p_WB.x(), at.pose.p_WB.y(), at.pose.p_WB.z(), q.w(), q.x(), q.y(), q.z(),
-                     heights[0], heights[1], at.state.energy, at.residual_force, at.residual_torque,
-                     at.force_bound, at.torque_bound});
+    text += csv_row(joined(
+        {at.is_stable() ? 1.0 : 0.0, degrees(at.angles.heel), degrees(at.angles.trim), at.draft,
+         at.pose.p_WB.x(), at.pose.p_WB.y(), at.pose.p_WB.z(), q.w(), q.x(), q.y(), q.z(), heights[0],
+         heights[1], at.state.energy, at.residual_force, at.residual_torque, at.force_bound, at.torque_bound},
+        points, row));
   }
   return text;
 }
 
-std::string table_text(const HydrostaticTable& table, const TableRows& rows) {
+std::string table_text(const HydrostaticTable& table, const TableRows& rows, const PointRows& points) {
   std::string text = fmt::format(
       "K at {:.6g} m along up, midship at {:.6g} m along forward, from the origin of the mesh; Lpp {:.6g} "
       "m.\n"
@@ -187,16 +327,19 @@ std::string table_text(const HydrostaticTable& table, const TableRows& rows) {
       text += '\n';
     }
   }
-  return text;
+  std::vector<double> drafts;
+  for (const HydrostaticRow& row : rows) drafts.push_back(row.draft);
+  return text + points_text(points, columns[0].name.data(), drafts);
 }
 
-Json table_json(const HydrostaticTable& table, const TableRows& rows) {
+Json table_json(const HydrostaticTable& table, const TableRows& rows, const PointRows& points) {
   const std::span<const TableColumn> columns = table_columns();
   Json entries = Json::array();
   for (const HydrostaticRow& row : rows) {
     const std::vector<double> values = values_of(row);
     Json& entry = entries.emplace_back(Json::object());
     for (std::size_t i = 0; i < columns.size(); ++i) entry[columns[i].name] = values[i];
+    if (!points.rows.empty()) add_readings(entry, points.points, points.rows[entries.size() - 1]);
   }
   return {{"keel", table.keel()},
           {"midship", table.midship()},
@@ -204,24 +347,26 @@ Json table_json(const HydrostaticTable& table, const TableRows& rows) {
           {"rows", std::move(entries)}};
 }
 
-std::string table_csv(const TableRows& rows) {
+std::string table_csv(const TableRows& rows, const PointRows& points) {
   std::string text;
   for (const TableColumn& column : table_columns()) {
     text += fmt::format("{}{}", text.empty() ? "" : ",", column.name);
   }
-  text += '\n';
-  for (const HydrostaticRow& row : rows) text += csv_row(values_of(row));
+  text += csv_columns(points) + '\n';
+  for (std::size_t i = 0; i < rows.size(); ++i) text += csv_row(joined(values_of(rows[i]), points, i));
   return text;
 }
 
-std::string righting_text(const RightingResults& results) {
+std::string righting_text(const RightingResults& results, const PointRows& points) {
   std::string text = fmt::format("{:>10}{:>10}{:>12}{:>14}{:>14}{:>14}\n", "heel, deg", "trim, deg",
                                  "draft, m", "GZ, m", "KN, m", "area, m rad");
   for (const auto& [arm, area] : results.curve.points) {
     text += fmt::format("{:>10.4g}{:>10.4f}{:>12.6g}{:>14.8f}{:>14.8f}{:>14.8f}\n", degrees(arm.heel),
                         degrees(arm.trim), arm.draft, arm.gz, arm.kn, area);
   }
-  text += '\n';
+  std::vector<double> heels;
+  for (const RightingCurvePoint& point : results.curve.points) heels.push_back(degrees(point.arm.heel));
+  text += points_text(points, "heel, deg", heels) + '\n';
   for (const ArmCrossing& crossing : results.curve.crossings) {
     text += fmt::format("GZ vanishes at {:.6f} degrees, {}\n", degrees(crossing.heel),
                         crossing.returns ? "to which the body returns" : "from which the body turns away");
@@ -234,20 +379,21 @@ std::string righting_text(const RightingResults& results) {
   }
   text += immersions_text("deck edge under water", results.deck_edge);
   text += immersions_text("downflooding", results.downflooding);
-  if (results.criteria.empty()) return text;
+  if (results.criteria.empty()) return text + weather_text(results);
   text += "\n2008 IS Code A 2.2, to starboard (not a class approval):\n";
   for (const StabilityCriterion& criterion : results.criteria) {
     text += fmt::format("{:>48}{:>12.5g} {:<8}{:>12.4g}  {}\n", criterion.name, criterion.value,
                         criterion.unit, criterion.required, criterion.is_met() ? "met" : "NOT met");
   }
-  return text;
+  return text + weather_text(results);
 }
 
-Json righting_json(const RightingResults& results) {
+Json righting_json(const RightingResults& results, const PointRows& rows) {
   Json points = Json::array();
   for (const auto& [arm, area] : results.curve.points) {
     Json point = arm_json(arm);
     point["area"] = area;
+    if (!rows.rows.empty()) add_readings(point, rows.points, rows.rows[points.size()]);
     points.push_back(std::move(point));
   }
   Json crossings = Json::array();
@@ -265,25 +411,29 @@ Json righting_json(const RightingResults& results) {
   const auto maximum = [](const std::optional<RightingArm>& arm) {
     return arm ? arm_json(*arm) : Json(nullptr);
   };
-  return {{"points", std::move(points)},
-          {"crossings", std::move(crossings)},
-          {"vanishing_starboard", in_degrees(results.curve.vanishing_starboard())},
-          {"vanishing_port", in_degrees(results.curve.vanishing_port())},
-          {"unbalanced_starboard", in_degrees(results.curve.unbalanced_starboard)},
-          {"unbalanced_port", in_degrees(results.curve.unbalanced_port)},
-          {"max_starboard", maximum(results.curve.max_starboard)},
-          {"max_port", maximum(results.curve.max_port)},
-          {"deck_edge", immersions_json(results.deck_edge)},
-          {"downflooding", immersions_json(results.downflooding)},
-          {"criteria",
-           {{"source", "2008 IS Code A 2.2, to starboard; not a class approval"},
-            {"values", std::move(criteria)}}}};
+  Json json{{"points", std::move(points)},
+            {"crossings", std::move(crossings)},
+            {"vanishing_starboard", in_degrees(results.curve.vanishing_starboard())},
+            {"vanishing_port", in_degrees(results.curve.vanishing_port())},
+            {"unbalanced_starboard", in_degrees(results.curve.unbalanced_starboard)},
+            {"unbalanced_port", in_degrees(results.curve.unbalanced_port)},
+            {"max_starboard", maximum(results.curve.max_starboard)},
+            {"max_port", maximum(results.curve.max_port)},
+            {"deck_edge", immersions_json(results.deck_edge)},
+            {"downflooding", immersions_json(results.downflooding)},
+            {"criteria",
+             {{"source", "2008 IS Code A 2.2, to starboard; not a class approval"},
+              {"values", std::move(criteria)}}}};
+  if (results.asks_weather) json["weather_criterion"] = weather_json(results.weather);
+  return json;
 }
 
-std::string righting_csv(const RightingResults& results) {
-  std::string text = "heel,trim,draft,gz,kn,area\n";
-  for (const auto& [arm, area] : results.curve.points) {
-    text += csv_row({degrees(arm.heel), degrees(arm.trim), arm.draft, arm.gz, arm.kn, area});
+std::string righting_csv(const RightingResults& results, const PointRows& points) {
+  std::string text = "heel,trim,draft,gz,kn,area" + csv_columns(points) + "\n";
+  for (std::size_t i = 0; i < results.curve.points.size(); ++i) {
+    const auto& [arm, area] = results.curve.points[i];
+    text +=
+        csv_row(joined({degrees(arm.heel), degrees(arm.trim), arm.draft, arm.gz, arm.kn, area}, points, i));
   }
   return text;
 }

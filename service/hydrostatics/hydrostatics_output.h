@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "base/json.h"
+#include "flotation/displaced_parts.h"
 #include "flotation/equilibrium.h"
 #include "flotation/hydrostatic_table.h"
 #include "service/hydrostatics/righting_results.h"
+#include "service/hydrostatics/water_points.h"
 
 namespace buoyancy::service {
 
@@ -17,18 +19,31 @@ std::string csv_row(const std::vector<double>& values);
 
 std::string outcome_sentence(FlotationOutcome outcome);
 
-std::string equilibria_text(const Equilibria& equilibria);
-Json equilibria_json(const Equilibria& equilibria);
-std::string equilibria_csv(const Equilibria& equilibria);
+// Drafts at marks and freeboards, one row of readings() per row of a result.
+struct PointRows {
+  WaterPoints points;
+  std::vector<std::vector<double>> rows;
+};
+
+// What each part of a body displaces, per attitude; empty: it has neither parts nor open compartments.
+struct PartRows {
+  double density = 0.0;  // [kg/m^3], of the water
+  std::vector<std::string> names;
+  std::vector<std::vector<DisplacedPart>> rows;
+};
+
+std::string equilibria_text(const Equilibria& equilibria, const PointRows& points, const PartRows& parts);
+Json equilibria_json(const Equilibria& equilibria, const PointRows& points, const PartRows& parts);
+std::string equilibria_csv(const Equilibria& equilibria, const PointRows& points);
 
 using TableRows = std::vector<HydrostaticRow>;
 
-std::string table_text(const HydrostaticTable& table, const TableRows& rows);
-Json table_json(const HydrostaticTable& table, const TableRows& rows);
-std::string table_csv(const TableRows& rows);
+std::string table_text(const HydrostaticTable& table, const TableRows& rows, const PointRows& points);
+Json table_json(const HydrostaticTable& table, const TableRows& rows, const PointRows& points);
+std::string table_csv(const TableRows& rows, const PointRows& points);
 
-std::string righting_text(const RightingResults& results);
-Json righting_json(const RightingResults& results);
-std::string righting_csv(const RightingResults& results);
+std::string righting_text(const RightingResults& results, const PointRows& points);
+Json righting_json(const RightingResults& results, const PointRows& points);
+std::string righting_csv(const RightingResults& results, const PointRows& points);
 
 }  // namespace buoyancy::service

@@ -199,7 +199,7 @@ std::string equilibria_page(const PageSubject& subject, const Equilibria& equili
     rows.states.push_back(state_at(subject, at.pose));
   }
   rows.all = rows.group = rows.values.size();
-  Json data = page_data(subject, "equilibrium", rows, equilibria_json(equilibria), true);
+  Json data = page_data(subject, "equilibrium", rows, equilibria_json(equilibria, {}, {}), true);
   if (equilibria.attitudes.empty()) data["outcome_text"] = outcome_sentence(equilibria.outcome);
   return page_of(data, three);
 }
@@ -221,7 +221,7 @@ std::string righting_page(const PageSubject& subject, const RightingResults& res
   }
   rows.all = results.curve.points.size();
   rows.group = rows.values.size();
-  Json json = righting_json(results);
+  Json json = righting_json(results, {});
   json.erase("points");
   Json data = page_data(subject, "gz", rows, std::move(json), true);
   data["rests"] = rests_json(subject, results, options);

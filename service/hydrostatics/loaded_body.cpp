@@ -25,6 +25,41 @@ Expected<const Body*> body_of(const Scene& scene, std::optional<std::int32_t> id
                      "--body with one of them: " + ids, "", ""});
 }
 
+std::shared_ptr<const HydrostaticMesh> with_tree(const HydrostaticMesh& prepared) {
+  auto mesh = std::make_shared<HydrostaticMesh>(prepared);
+  if (!mesh->tree) mesh->tree = build_moment_tree(*mesh);
+  return mesh;
+}
+
+// whole: the floating body of the scene's body, with its merged mesh.
+Expected<std::optional<BodyShares>> shares_of(const Body& body, const FloatingBody& whole,
+                                              std::shared_ptr<const HydrostaticMesh> hull) {
+  const std::vector<PlacedMesh> compartments = open_compartments(body);
+  if (body.parts == nullptr && compartments.empty()) return std::nullopt;
+  std::vector<std::shared_ptr<const HydrostaticMesh>> meshes;
+  std::vector<std::string> names;
+  if (body.parts != nullptr) {
+    for (const BodyPart& part : *body.parts) {
+      meshes.push_back(with_tree(part.prepared_mesh->mesh));
+      names.push_back(part.name);
+    }
+  } else {
+    meshes.push_back(std::move(hull));
+    names.emplace_back("hull");
+  }
+  std::vector<PlacedMesh> placed;
+  for (const auto& mesh : meshes) placed.push_back({.mesh = mesh.get()});
+  placed.insert(placed.end(), compartments.begin(), compartments.end());
+  if (body.subdivision != nullptr) {
+    for (const BodyCompartment& compartment : body.subdivision->compartments) {
+      if (factor_of(compartment, compartment.flooded) < 0.0) names.push_back(compartment.name);
+    }
+  }
+  Expected<FloatingBody> floating = FloatingBody::make(placed, whole.mass(), whole.center_of_mass_B());
+  if (!floating) return tl::unexpected(floating.error());
+  return BodyShares{std::move(meshes), std::move(names), *std::move(floating)};
+}
+
 SceneDescription mesh_scene(const HydrostaticsOptions& options, const MeshPlacement& placement) {
   SceneDescription scene =
       single_mesh_scene(options.mesh, Method::kHierarchical, 0.0, options.open, placement);
@@ -65,13 +100,13 @@ Expected<LoadedBody> load_body(LoadedScene loaded, const HydrostaticsPlan& plan)
   }
   if (!mass && needs_mass(plan.command)) return tl::unexpected(mass.error());
 
-  const HydrostaticMesh& prepared = body.prepared_mesh->mesh;
-  auto mesh = std::make_shared<HydrostaticMesh>(prepared);
-  if (!mesh->tree) mesh->tree = build_moment_tree(*mesh);
+  std::shared_ptr<const HydrostaticMesh> mesh = with_tree(body.prepared_mesh->mesh);
   const bool uses_mass = mass && (knows_mass || needs_mass(plan.command));
   Expected<FloatingBody> floating =
       uses_mass ? floating_body_of(body, *mesh, *mass) : floating_hull_of(body, *mesh);
   if (!floating) return tl::unexpected(floating.error());
+  Expected<std::optional<BodyShares>> shares = shares_of(body, *floating, mesh);
+  if (!shares) return tl::unexpected(shares.error());
   std::optional<Warning> assumed;
   if (loaded.is_of_scene && uses_mass && !knows_mass) {
     assumed = {scene.name() + ": body '" + body.name + "'",
@@ -79,9 +114,9 @@ Expected<LoadedBody> load_body(LoadedScene loaded, const HydrostaticsPlan& plan)
                "mass or density in [body.client]", "without them a body has half the density of the water",
                "Set one of them to what the body weighs"};
   }
-  return LoadedBody{
-      std::move(loaded.name), std::move(loaded.scene), std::move(mesh), *std::move(floating), uses_mass,
-      std::move(assumed)};
+  return LoadedBody{std::move(loaded.name), std::move(loaded.scene), std::move(mesh),
+                    *std::move(floating),   *std::move(shares),      uses_mass,
+                    std::move(assumed)};
 }
 
 }  // namespace buoyancy::service

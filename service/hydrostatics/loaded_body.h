@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "flotation/floating_body.h"
 #include "scene/scene.h"
@@ -25,13 +26,21 @@ struct LoadedScene {
 // Errors: those of the scene, a body that it lacks, several bodies and none named.
 Expected<LoadedScene> load_scene(const HydrostaticsOptions& options, const HydrostaticsPlan& plan);
 
+// The parts and open compartments of a body as terms of their own, where it has any.
+struct BodyShares {
+  std::vector<std::shared_ptr<const HydrostaticMesh>> meshes;  // with their trees
+  std::vector<std::string> names;                              // of body.volumes()
+  FloatingBody body;                                           // as a whole the same one
+};
+
 struct LoadedBody {
   std::string name;  // of the scene's file and the body, or of the mesh's file
   Scene scene;
   std::shared_ptr<const HydrostaticMesh> mesh;  // with its tree
   FloatingBody body;                            // of `mesh`
-  bool knows_mass = true;                       // false: that of `body` is any
-  std::optional<Warning> assumed_mass = {};     // set: the scene does not say what the body weighs
+  std::optional<BodyShares> shares = {};
+  bool knows_mass = true;                    // false: that of `body` is any
+  std::optional<Warning> assumed_mass = {};  // set: the scene does not say what the body weighs
 
   const Water& water() const { return scene.water(); }
 };

@@ -49,10 +49,8 @@ double area_to(const RightingCurve& curve, double heel) {
 std::vector<StabilityCriterion> general_criteria(const FloatingBody& body, const Water& water,
                                                  double flooding, const RightingArmOptions& options) {
   const auto curve = righting_curve(body, water, heels_of_criteria(flooding), options);
-  constexpr double kStep = 1e-4;  // [rad], of the central difference
-  const auto right = righting_arm(body, water, kStep, options);
-  const auto left = righting_arm(body, water, -kStep, options);
-  if (!curve || curve->unbalanced_starboard || !right || !left) return {};
+  const std::optional<double> gm = upright_metacentric_height(body, water, options);
+  if (!curve || curve->unbalanced_starboard || !gm) return {};
 
   const bool reaches_thirty = flooding >= kThirty;
   const double to_thirty = area_to(*curve, kThirty);
@@ -76,7 +74,7 @@ std::vector<StabilityCriterion> general_criteria(const FloatingBody& body, const
           {"area from 30 to " + end_text, to_end - to_thirty, 0.030, "m rad"},
           {"largest GZ at 30 degrees or more", max_beyond_thirty, 0.20, "m"},
           {"heel of the largest GZ", heel_of_max / kRadiansPerDegree, 25.0, "degrees"},
-          {"GM at heel 0", (right->gz - left->gz) / (2.0 * kStep), 0.15, "m"}};
+          {"GM at heel 0", *gm, 0.15, "m"}};
 }
 
 std::optional<FirstImmersions> immersions(const FloatingBody& body, const Water& water,
@@ -90,7 +88,8 @@ std::optional<FirstImmersions> immersions(const FloatingBody& body, const Water&
 
 std::optional<RightingResults> righting_results(const FloatingBody& body, const Water& water,
                                                 std::span<const double> heels, const ImmersionPoints& points,
-                                                const RightingArmOptions& options) {
+                                                const RightingArmOptions& options,
+                                                const WeatherInputs* weather) {
   const auto count = static_cast<std::int64_t>(heels.size());
   constexpr std::int64_t kCriteriaHeels = kMaxHeel + 1;
   std::optional<RightingCurve> curve =
@@ -100,11 +99,19 @@ std::optional<RightingResults> righting_results(const FloatingBody& body, const 
                           .criteria = {},
                           .deck_edge = immersions(body, water, points.deck_edge_B, options),
                           .downflooding = immersions(body, water, points.downflooding_B, options)};
-  double flooding = std::numeric_limits<double>::infinity();
-  if (results.downflooding && results.downflooding->starboard) {
-    flooding = results.downflooding->starboard->heel;
+  CriticalHeels critical;
+  for (const auto& [found, heel] : {std::pair{&results.deck_edge, &critical.deck_edge},
+                                    std::pair{&results.downflooding, &critical.downflooding}}) {
+    if (*found && (*found)->starboard) *heel = (*found)->starboard->heel;
   }
-  results.criteria = general_criteria(body, water, flooding, with_progress(options, count, count));
+  results.criteria =
+      general_criteria(body, water, critical.downflooding, with_progress(options, count, count));
+  if (weather != nullptr) {
+    RightingArmOptions quiet = options;
+    quiet.progress = nullptr;
+    results.asks_weather = true;
+    results.weather = weather_criterion(body, water, weather->exposure, *weather->table, critical, quiet);
+  }
   return results;
 }
 

@@ -7,8 +7,6 @@
 namespace buoyancy::service {
 namespace {
 
-constexpr double kTonnesPerKilogram = 1e-3;
-
 constexpr std::array kColumns{TableColumn{"draft", "Draft", "m"},
                               TableColumn{"trim", "Trim", "°"},
                               TableColumn{"displacement_volume", "Displaced volume", "m³"},

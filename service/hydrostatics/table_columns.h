@@ -9,6 +9,8 @@
 
 namespace buoyancy::service {
 
+inline constexpr double kTonnesPerKilogram = 1e-3;
+
 struct TableColumn {
   std::string_view name;   // in CSV and JSON
   std::string_view title;  // in prose

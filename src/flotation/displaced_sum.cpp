@@ -22,13 +22,19 @@ WaterPlane plane_of(const SignedVolume& volume, const WaterPlane& plane) {
 
 }  // namespace
 
+DisplacedSum displaced_by(const SignedVolume& volume, const WaterPlane& plane) {
+  const Displacement displaced = hierarchical(*volume.placed.mesh, plane_of(volume, plane));
+  return {volume.placed.signed_permeability * displaced.volume,
+          volume.placed.signed_permeability *
+              (volume.R_B * displaced.moment + displaced.volume * volume.offset_B)};
+}
+
 DisplacedSum displaced_sum(const FloatingBody& body, const WaterPlane& plane) {
   DisplacedSum sum;
   for (const SignedVolume& volume : body.volumes()) {
-    const Displacement displaced = hierarchical(*volume.placed.mesh, plane_of(volume, plane));
-    sum.volume += volume.placed.signed_permeability * displaced.volume;
-    sum.moment += volume.placed.signed_permeability *
-                  (volume.R_B * displaced.moment + displaced.volume * volume.offset_B);
+    const DisplacedSum part = displaced_by(volume, plane);
+    sum.volume += part.volume;
+    sum.moment += part.moment;
   }
   return sum;
 }

@@ -13,6 +13,9 @@ struct DisplacedSum {
   Vec3 moment = Vec3::Zero();  // [m^4]
 };
 
+// What one of the body's meshes adds to the sum, with its sign.
+DisplacedSum displaced_by(const FloatingBody::SignedVolume& volume, const WaterPlane& plane);
+
 // All planes are about the body's center_B. Complexity: that of `hierarchical` per mesh.
 DisplacedSum displaced_sum(const FloatingBody& body, const WaterPlane& plane);
 

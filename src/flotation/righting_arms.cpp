@@ -142,21 +142,24 @@ class ArmSearch {
   double keel_;
 };
 
-// Returns the arm between two heels at which GZ vanishes, by false position with bisection.
-std::optional<RightingArm> crossing_between(const ArmSearch& search, RightingArm low, RightingArm high) {
+// Returns the arm between two heels at which GZ is `lever`, by false position with bisection.
+std::optional<RightingArm> crossing_between(const ArmSearch& search, RightingArm low, RightingArm high,
+                                            double lever) {
   constexpr double kAccuracy = 1e-13;  // [rad]
   constexpr int kMaxRounds = 100;
   for (int round = 0; round < kMaxRounds && high.heel - low.heel > kAccuracy; ++round) {
-    if (low.gz == 0.0) return low;
-    if (high.gz == 0.0) return high;
+    const double below = low.gz - lever;
+    const double above = high.gz - lever;
+    if (below == 0.0) return low;
+    if (above == 0.0) return high;
     double heel = 0.5 * (low.heel + high.heel);
-    if (round % 3 != 2) heel = low.heel - low.gz * (high.heel - low.heel) / (high.gz - low.gz);
+    if (round % 3 != 2) heel = low.heel - below * (high.heel - low.heel) / (above - below);
     if (!(heel > low.heel && heel < high.heel)) heel = 0.5 * (low.heel + high.heel);
     const std::optional<RightingArm> arm = search.near(heel, low);
     if (!arm) return std::nullopt;
-    (std::signbit(arm->gz) == std::signbit(low.gz) ? low : high) = *arm;
+    (std::signbit(arm->gz - lever) == std::signbit(below) ? low : high) = *arm;
   }
-  return std::abs(low.gz) < std::abs(high.gz) ? low : high;
+  return std::abs(low.gz - lever) < std::abs(high.gz - lever) ? low : high;
 }
 
 // Returns the arm of the largest side * gz between two heels, by golden section.
@@ -203,6 +206,21 @@ std::optional<RightingArm> max_to_side(const ArmSearch& search, const std::vecto
 std::optional<RightingArm> righting_arm(const FloatingBody& body, const Water& water, double heel,
                                         const RightingArmOptions& options, double start_trim) {
   return ArmSearch(body, water, options).at(heel, start_trim);
+}
+
+std::optional<RightingArm> arm_at_lever(const FloatingBody& body, const Water& water, const RightingArm& low,
+                                        const RightingArm& high, double lever,
+                                        const RightingArmOptions& options) {
+  return crossing_between(ArmSearch(body, water, options), low, high, lever);
+}
+
+std::optional<double> upright_metacentric_height(const FloatingBody& body, const Water& water,
+                                                 const RightingArmOptions& options) {
+  constexpr double kStep = 1e-4;  // [rad]
+  const auto right = righting_arm(body, water, kStep, options);
+  const auto left = righting_arm(body, water, -kStep, options);
+  if (!right || !left) return std::nullopt;
+  return (right->gz - left->gz) / (2.0 * kStep);
 }
 
 std::optional<double> RightingCurve::vanishing_starboard() const {
@@ -266,7 +284,7 @@ std::optional<RightingCurve> righting_curve(const FloatingBody& body, const Wate
     // The arms next to upright vanish with the heel, unless the body has a list.
     const bool is_upright = low.heel <= 0.0 && high.heel >= 0.0 && !has_list;
     if (!(low.gz * high.gz < 0.0) || is_upright) continue;
-    const std::optional<RightingArm> crossing = crossing_between(search, low, high);
+    const std::optional<RightingArm> crossing = crossing_between(search, low, high, 0.0);
     if (crossing) curve.crossings.push_back({crossing->heel, high.gz > 0.0});
   }
   curve.max_starboard = max_to_side(search, arms, 1.0);

@@ -49,6 +49,18 @@ struct RightingArm {
 std::optional<RightingArm> righting_arm(const FloatingBody& body, const Water& water, double heel,
                                         const RightingArmOptions& options = {}, double start_trim = 0.0);
 
+// Returns the arm at which GZ is `lever` [m], between two of the same body of which one is below and one
+// above it, to 1e-13 rad; nullopt as righting_arm(). low.heel < high.heel. Complexity: some ten righting
+// arms.
+std::optional<RightingArm> arm_at_lever(const FloatingBody& body, const Water& water, const RightingArm& low,
+                                        const RightingArm& high, double lever,
+                                        const RightingArmOptions& options = {});
+
+// Returns the slope of GZ at heel 0 [m], which is GM, with free surfaces, for a body that rests there;
+// nullopt as righting_arm(). It is a central difference of 1e-4 rad. Complexity: two righting arms.
+std::optional<double> upright_metacentric_height(const FloatingBody& body, const Water& water,
+                                                 const RightingArmOptions& options = {});
+
 struct RightingCurvePoint {
   RightingArm arm;
   double area = 0.0;  // [m rad], of GZ from heel 0

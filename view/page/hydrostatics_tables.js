@@ -37,6 +37,11 @@ function criteria_rows(criteria) {
   return criteria.values.map(({ name, value, required, unit, met }) => [name, value, required, unit, met ? 'met' : 'NOT met']);
 }
 
+function weather_rows({ source, outside, ...values }) {
+  const text = (value) => (typeof value === 'boolean' ? (value ? 'met' : 'NOT met') : value);
+  return [...Object.entries(values).map(([name, value]) => [name, text(value)]), ...outside.map((limit) => ['outside the ships of the formulae', limit])];
+}
+
 // The rows of the page, or an evenly chosen part of many, since a browser takes seconds for a hundred thousand cells.
 function value_table(data, columns) {
   const max_rows = 500;
@@ -66,6 +71,8 @@ function hydrostatics_tables(data, columns, parent) {
     if (criteria.length > 0) {
       section('General criteria', table_of(results.criteria.source, ['criterion', 'value', 'required', 'unit', ''], criteria));
     }
+    const weather = results.weather_criterion;
+    if (weather) section('Weather criterion', table_of(weather.source, ['value', ''], weather_rows(weather)));
     section('Righting arms', value_table(data, columns));
   }
   if (data.command === 'table') {
