@@ -118,8 +118,9 @@ const std::vector<Value> kValues{
          [[true, true, false], [true, true, false], [true, true, false]]])"},
     {"decode_numbers(btoa(String.fromCharCode(0, 0, 128, 63, 0, 0, 0, 192)), Float32Array)[1]", "-2"},
     {"[[[1, 2, 3], [1, 0, 0, 0]], [[1, NaN, 3], [1, 0, 0, 0]], [[1, 2, 3], [0, 0, 0, 0]],"
-     " [[1, 2, 3], [1, 0, Infinity, 0]]].map(([p, q]) => is_valid_pose(p, q))",
-     "[true, false, false, false]"},
+     " [[1, 2, 3], [1, 0, Infinity, 0]], [[1, 2, 3], [0, 1.1, 0, 0]], [[1, 2, 3], [0, 0.6, 0, -0.8004]]]"
+     ".map(([p, q]) => is_valid_pose(p, q))",
+     "[true, false, false, false, false, true]"},
 };
 
 TEST_F(PageValues, OfFunctionsAreThoseExpected) {

@@ -4,17 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/body_evaluation.h"
 #include "messages/conversions.h"
 
 namespace buoyancy::view {
 namespace {
 
 std::optional<BodyMonitor::Pose> valid_pose(const BodyState& state) {
-  constexpr double kMaxNormError = 1e-3;  // same as the service's
-  if (!all_finite(state.position)) return std::nullopt;
-  double norm = 0.0;
-  for (const double component : state.quaternion_wxyz) norm = std::hypot(norm, component);
-  if (!(std::abs(norm - 1.0) <= kMaxNormError)) return std::nullopt;
+  if (validate_pose(state, 0.0).status != BodyStatus::kOk) return std::nullopt;
   return BodyMonitor::Pose{state.position, state.quaternion_wxyz};
 }
 

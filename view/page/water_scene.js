@@ -346,9 +346,9 @@ class WaterScene {
   }
 }
 
-// p: position; q: quaternion [w, x, y, z].
+// p: position; q: quaternion [w, x, y, z]. Its norm is 1 within the tolerance of messages (body_evaluation.h).
 function is_valid_pose(p, q) {
-  return p.every(Number.isFinite) && q.every(Number.isFinite) && q.some((component) => component !== 0);
+  return p.every(Number.isFinite) && Math.abs(Math.hypot(...q) - 1) <= 1e-3;
 }
 
 // Returns whether WebGL renders in software, where antialiasing costs a third of the frame rate.
