@@ -15,12 +15,12 @@ std::vector<std::string> column_names(const WaterPoints& points) {
 
 std::vector<double> readings(const WaterPoints& points, const ShipAxes& axes, double keel, const Vec3& up_B,
                              double height) {
-  constexpr double kLeastCosine = 1e-9;
+  constexpr double kMinCosine = 1e-9;
   const double cosine = up_B.dot(axes.up_B);
   std::vector<double> values;
   for (const DraftMark& mark : points.marks) {
     const Vec3 at_B = mark.forward * axes.forward_B + mark.port * axes.port_B() + keel * axes.up_B;
-    values.push_back(cosine > kLeastCosine ? -(height + up_B.dot(at_B)) / cosine : kNaN);
+    values.push_back(cosine > kMinCosine ? -(height + up_B.dot(at_B)) / cosine : kNaN);
   }
   for (const Vec3& point_B : points.freeboards_B) values.push_back(height + up_B.dot(point_B));
   return values;

@@ -63,7 +63,7 @@ constexpr std::array<Unit, 4> kUnits{{
     {TimeUnit::kNanoseconds, "nanoseconds", "[ns]", 1e17, 1'000'000'000},
 }};
 constexpr std::int64_t kMicrosecondsPerSecond = 1'000'000;
-constexpr double kLargestTime = 4e18;  // [us], so that nanoseconds can be added
+constexpr double kMaxTime = 4e18;  // [us], so that nanoseconds can be added
 
 const Unit& facts_of(TimeUnit unit) {
   return kUnits[static_cast<std::size_t>(unit)];
@@ -110,12 +110,12 @@ bool read_time(std::string_view text, TimeUnit unit, std::int64_t& utime) {
     const std::int64_t rest = ((whole % divisor) + divisor) % divisor;
     const std::int64_t floor = whole / divisor - (whole % divisor < 0 ? 1 : 0);
     utime = floor + (divisor > 1 && 2 * rest >= divisor ? 1 : 0);
-    return std::abs(static_cast<double>(whole)) / static_cast<double>(divisor) < kLargestTime;
+    return std::abs(static_cast<double>(whole)) / static_cast<double>(divisor) < kMaxTime;
   }
   double value = 0.0;
   if (!parse_finite(text, value)) return false;
   value *= static_cast<double>(kMicrosecondsPerSecond) / static_cast<double>(per_second);
-  if (std::abs(value) >= kLargestTime) return false;
+  if (std::abs(value) >= kMaxTime) return false;
   utime = std::llround(value);
   return true;
 }

@@ -40,9 +40,11 @@
     const interpolated = (name) => columns[name][row] + fraction * (columns[name][next] - columns[name][row]);
     const from = at_row(body, quaternion_names, row), to = at_row(body, quaternion_names, next);
     const sign = from.reduce((sum, value, i) => sum + value * to[i], 0) < 0 ? -1 : 1;  // q and -q are the same rotation
+    const between = from.map((value, i) => (1 - fraction) * value + sign * fraction * to[i]);
+    const norm = next > row ? Math.hypot(...between) : 1;  // a row by itself is as recorded, so that its norm is checked
     const at = (names) => at_row(body, names, row);
     return { id: body.id, status: columns.status[row], p: position_names.map(interpolated),
-             q: from.map((value, i) => (1 - fraction) * value + sign * fraction * to[i]),
+             q: between.map((value) => value / norm),
              f: at(['fx', 'fy', 'fz']), t: at(['tx', 'ty', 'tz']), b: at(['bx', 'by', 'bz']),
              loads: body.loads && body.loads.at(row),
              condition: condition_of_row(body, row),  // only with subdivision
