@@ -48,6 +48,7 @@ Expected<std::optional<BodyShares>> shares_of(const Body& body, const FloatingBo
     names.emplace_back("hull");
   }
   std::vector<PlacedMesh> placed;
+  placed.reserve(meshes.size() + compartments.size());
   for (const auto& mesh : meshes) placed.push_back({.mesh = mesh.get()});
   placed.insert(placed.end(), compartments.begin(), compartments.end());
   if (body.subdivision != nullptr) {

@@ -159,7 +159,7 @@ class ColumnSearch {
   // Assigns prefix + each letter; returns the first name that is missing, or nothing.
   std::string assign_axes(const std::string& prefix, std::string_view letters, std::int8_t first_slot) {
     for (std::size_t i = 0; i < letters.size(); ++i) {
-      const std::string name = prefix + letters[i];
+      std::string name = prefix + letters[i];
       if (!assign(name, static_cast<std::int8_t>(first_slot + static_cast<std::int8_t>(i)))) return name;
     }
     return "";
@@ -334,7 +334,7 @@ tl::expected<void, std::string> PoseTable::read_row(std::string_view line, std::
         return invalid(std::string("a time in ") + facts_of(unit_).name);
     } else if (slot == kNanoseconds) {
       if (!read_time(*field, TimeUnit::kNanoseconds, nanoseconds)) return invalid("a time in nanoseconds");
-    } else if (slot != kIgnored && !parse_number(*field, numbers[static_cast<std::size_t>(slot)])) {
+    } else if (slot != kIgnored && !parse_number(*field, numbers[static_cast<std::uint8_t>(slot)])) {
       return invalid("a number");
     }
   }

@@ -1,6 +1,5 @@
 #include "geometry/edge_insertion.h"
 
-#include <chrono>
 #include <cmath>
 #include <vector>
 
@@ -153,12 +152,10 @@ TEST(EdgeInsertion, EndsOnBundlesOfNeedles) {
     const std::int32_t c = bundle.add_vertex({1.0 + 0.5 * at, 0, 1e-9});
     bundle.triangles.push_back({a, b, c});
   }
-  const auto start = std::chrono::steady_clock::now();
   const MeshValidation validation = validate_mesh({bundle, {}}, "bundle");
   EXPECT_FALSE(validation.mesh);
   ASSERT_FALSE(validation.report.repair.skipped.empty());
   EXPECT_EQ(validation.report.repair.skipped[0].obstacle, RepairObstacle::kTooMany);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
 }
 
 TEST(MeshRepair, ClosesACrackAndATJunctionTogether) {

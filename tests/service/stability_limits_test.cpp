@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,7 +66,8 @@ std::vector<std::pair<std::string, double>> independent_margins(const BoxSection
 }
 
 TEST_F(KgLimitOfABox, IsWhereAnIndependentCriterionStopsToHold) {
-  std::vector<std::string> governing;
+  std::set<std::string> governing;
+  int limits = 0;
   for (const double draft : {2.0, 6.0, 8.0, 9.0, 10.0}) {
     const std::optional<KgLimit> found = limit(draft);
     ASSERT_TRUE(found && found->kg_max) << draft;
@@ -77,13 +79,12 @@ TEST_F(KgLimitOfABox, IsWhereAnIndependentCriterionStopsToHold) {
     for (const auto& [name, margin] : independent_margins(box, *found->kg_max + 1e-3)) {
       if (found->governing.starts_with(name)) {
         EXPECT_LT(margin, 0.0) << draft << ' ' << name;
-        governing.push_back(name);
+        governing.insert(name);
+        ++limits;
       }
     }
   }
-  EXPECT_EQ(governing.size(), 5U);
-  std::ranges::sort(governing);
-  governing.erase(std::ranges::unique(governing).begin(), governing.end());
+  EXPECT_EQ(limits, 5);
   EXPECT_GE(governing.size(), 3U);  // several criteria govern
 }
 
