@@ -55,8 +55,13 @@ TEST(CoefficientChecks, RejectAnUnsymmetricAddedMassOnly) {
   const auto fault = find_added_mass_fault(matrix);
   ASSERT_TRUE(fault);
   EXPECT_TRUE(contains(fault->expected, "row 6, column 2 is 0, row 2, column 6 is 0.25"));
-  matrix(5, 1) = 0.25 * (1.0 + 1e-7);
+  // The limit is relative to the diagonal: 1e-6 of the root of 4 times 9.
+  matrix(1, 1) = 4.0;
+  matrix(5, 5) = 9.0;
+  matrix(5, 1) = 0.25 + 5.9e-6;
   EXPECT_FALSE(find_added_mass_fault(matrix));
+  matrix(5, 1) = 0.25 + 6.1e-6;
+  EXPECT_TRUE(find_added_mass_fault(matrix));
 }
 
 TEST(CoefficientChecks, FindTheTwistThatAFullQuadraticDragDrives) {
