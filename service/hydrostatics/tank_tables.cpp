@@ -9,11 +9,11 @@
 #include "base/angles.h"
 #include "base/format.h"
 #include "service/hydrostatics/hydrostatics_output.h"
+#include "service/hydrostatics/table_columns.h"
 
 namespace buoyancy::service {
 namespace {
 
-constexpr double kTonnesPerKilogram = 1e-3;
 constexpr std::array<std::string_view, 11> kColumns{"trim", "heel", "sounding", "volume", "fill", "mass",
                                                     "x",    "y",    "z",        "fsm_t",  "fsm_l"};
 
