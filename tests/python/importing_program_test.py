@@ -155,6 +155,14 @@ class RefusesBrokenModels(ImportTestCase):
         self.assert_refused(sdf(link(inside=box(size="1 1 -1") + inertial())), "lengths above 0")
         self.assert_refused(sdf(link(pose="<pose>0 0 ${z}</pose>")), "template that was not expanded")
 
+    def test_capsule_without_length(self):
+        geom = '<geom name="pod" type="capsule" size="0.1" fromto="1 2 3 1 2 3" mass="1"/>'
+        text = f"<mujoco><worldbody><body name='a'>{geom}</body></worldbody></mujoco>"
+        self.assert_refused(text, "two equal points", name="vehicle.xml")
+
+    def test_uri_that_no_file_system_holds(self):
+        self.assert_refused(sdf(link(inside=mesh("a" * 5000))), "is not found")
+
     def test_joint_of_unknown_link(self):
         self.assert_refused(sdf(link() + fixed("base", "mast")), "'mast'")
 

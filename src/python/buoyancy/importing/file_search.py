@@ -41,7 +41,7 @@ class FileSearch:
         else:
             candidates = [near / name, *(folder / name for folder in self.folders)]
         for candidate in candidates:
-            if candidate.exists():
+            if os.path.exists(candidate):  # False, too, for a name that is longer than the system allows
                 return candidate
         hint = "Name the folder that contains it with --path"
         if scheme in ("http", "https"):

@@ -197,6 +197,9 @@ class MjcfReader:
         if "fromto" in values and kind in ("capsule", "cylinder", "box", "ellipsoid"):
             ends = numbers("fromto", 6)
             axis = frames.subtract(ends[3:], ends[:3])
+            if not any(axis):
+                fail(geom.where, f"fromto of '{name}' has two equal points", "two different ends", "a typing error",
+                     "Correct one of them, or give pos and size")
             pose = (tuple((a + b) / 2 for a, b in zip(ends[:3], ends[3:])), frames.turning_z_to(axis))
             half = math.sqrt(sum(c * c for c in axis)) / 2
             size = [size[0], half] if kind in ("capsule", "cylinder") else [size[0], size[0], half]

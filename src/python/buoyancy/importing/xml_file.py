@@ -99,6 +99,8 @@ class XmlReader:
     def read(self, path):
         path = Path(path)
         try:
+            if path.is_fifo() or path.is_socket():
+                raise ImportFailure(f"{path}: cannot be read: not a regular file")
             with open(path, "rb") as file:
                 data = file.read(MAX_BYTES - self.bytes + 1)
         except OSError as error:
