@@ -5,6 +5,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "base/format.h"
+#include "service/hydrostatics/hydrostatics_output.h"
 
 namespace buoyancy::service {
 namespace {
@@ -71,8 +72,8 @@ Json ballast_json(const Ballast& ballast) {
 std::string ballast_csv(const Ballast& ballast) {
   std::string text = "mass,x,y,z\n";
   for (const BallastPlace& place : ballast.places) {
-    text += fmt::format("{:.17g},{:.17g},{:.17g},{:.17g}\n", place.mass, place.position_B.x(),
-                        place.position_B.y(), place.position_B.z());
+    const Vec3& at = place.position_B;
+    text += csv_row({place.mass, at.x(), at.y(), at.z()});
   }
   return text;
 }
@@ -88,9 +89,8 @@ std::optional<Error> instability(const Ballast& ballast) {
   std::string text = "in balance, but not stable";
   for (std::size_t i = 0; i < 2; ++i) {
     if (ballast.metacentric_heights[i] > 0.0) continue;
-    const Vec3& axis = ballast.turning_axes_B[i];
-    text += fmt::format("{} GM {:.4g} m about the axis ({:.3f}, {:.3f}, {:.3f}) of the body",
-                        i == 0 ? ":" : ";", ballast.metacentric_heights[i], axis.x(), axis.y(), axis.z());
+    text += i == 0 ? ": " : "; ";
+    text += gm_about_axis(ballast.metacentric_heights[i], ballast.turning_axes_B[i]);
   }
   return Error{"ballast", std::move(text), "both metacentric heights above 0",
                "the centre of mass is too high", "Put the ballast lower or use more of it"};

@@ -28,6 +28,11 @@ std::string csv_row(const std::vector<double>& values) {
   return row;
 }
 
+std::string gm_about_axis(double height, const Vec3& axis_B) {
+  return fmt::format("GM {:.4g} m about the axis ({:.3f}, {:.3f}, {:.3f}) of the body", height, axis_B.x(),
+                     axis_B.y(), axis_B.z());
+}
+
 std::string outcome_sentence(FlotationOutcome outcome) {
   switch (outcome) {
     case FlotationOutcome::kFloats:
@@ -55,8 +60,7 @@ std::string reason(const Equilibrium& at) {
     if (at.is_stable() || !(height < 0.0)) continue;
     const Vec3 axis = at.pose.q_WB.conjugate() * at.state.hydrostatics.waterplane_axes_W[i];
     if (!text.empty()) text += "; ";
-    text += fmt::format("GM {:.4g} m about the axis ({:.3f}, {:.3f}, {:.3f}) of the body", height, axis.x(),
-                        axis.y(), axis.z());
+    text += gm_about_axis(height, axis);
   }
   return text;
 }

@@ -17,6 +17,9 @@ namespace buoyancy::service {
 // The values as a line, with 17 significant digits.
 std::string csv_row(const std::vector<double>& values);
 
+// Says about which axis a body is not stable. height: [m], GM; axis_B: unit.
+std::string gm_about_axis(double height, const Vec3& axis_B);
+
 std::string outcome_sentence(FlotationOutcome outcome);
 
 // Drafts at marks and freeboards, one row of readings() per row of a result.

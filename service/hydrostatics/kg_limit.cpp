@@ -48,13 +48,11 @@ std::optional<KgLimit> kg_limit(const FloatingBody& body, const Water& water, co
   if (!row || !(row->volume > body.volume_tolerance()) || !(row->waterplane_area > 0.0)) {
     return std::nullopt;
   }
-  std::vector<PlacedMesh> meshes;
-  for (const FloatingBody::SignedVolume& volume : body.volumes()) meshes.push_back(volume.placed);
   const ShipAxes& axes = options.axes;
   const auto at = [&](double kg) -> Margin {
     const double lcg = table.midship() + row->lcb + (kg - row->kb) * std::tan(trim);
     const Vec3 center_B = lcg * axes.forward_B + row->tcb * axes.port_B() + (table.keel() + kg) * axes.up_B;
-    const Expected<FloatingBody> loaded = FloatingBody::make(meshes, row->mass, center_B);
+    const Expected<FloatingBody> loaded = with_mass(body, row->mass, center_B, {});
     if (!loaded) return margin_of(std::nullopt);
     return margin_of(righting_results(*loaded, water, std::array{0.0}, points, options, weather));
   };

@@ -106,7 +106,8 @@ Expected<LoadedBody> load_body(LoadedScene loaded, const HydrostaticsPlan& plan)
   Expected<FloatingBody> floating =
       uses_mass ? floating_body_of(body, *mesh, *mass) : floating_hull_of(body, *mesh);
   if (!floating) return tl::unexpected(floating.error());
-  Expected<std::optional<BodyShares>> shares = shares_of(body, *floating, mesh);
+  Expected<std::optional<BodyShares>> shares = std::nullopt;
+  if (plan.command == HydrostaticsCommand::kEquilibrium) shares = shares_of(body, *floating, mesh);
   if (!shares) return tl::unexpected(shares.error());
   std::optional<Warning> assumed;
   if (loaded.is_of_scene && uses_mass && !knows_mass) {

@@ -38,9 +38,9 @@ struct LoadedBody {
   Scene scene;
   std::shared_ptr<const HydrostaticMesh> mesh;  // with its tree
   FloatingBody body;                            // of `mesh`
-  std::optional<BodyShares> shares = {};
-  bool knows_mass = true;                    // false: that of `body` is any
-  std::optional<Warning> assumed_mass = {};  // set: the scene does not say what the body weighs
+  std::optional<BodyShares> shares = {};        // of the command equilibrium
+  bool knows_mass = true;                       // false: that of `body` is any
+  std::optional<Warning> assumed_mass = {};     // set: the scene does not say what the body weighs
 
   const Water& water() const { return scene.water(); }
 };

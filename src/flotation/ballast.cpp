@@ -24,12 +24,6 @@ tl::unexpected<Error> ballast_error(std::string actual, std::string expected, st
   return make_error({"ballast", std::move(actual), std::move(expected), std::move(cause), std::move(hint)});
 }
 
-Expected<FloatingBody> with_mass(const FloatingBody& body, double mass, const Vec3& center_of_mass_B) {
-  std::vector<PlacedMesh> meshes;
-  for (const FloatingBody::SignedVolume& volume : body.volumes()) meshes.push_back(volume.placed);
-  return FloatingBody::make(meshes, mass, center_of_mass_B, body.tanks());
-}
-
 bool is_in_box(const FloatingBody& body, const Vec3& position_B) {
   for (int axis = 0; axis < 3; ++axis) {
     const double from_center = (position_B - body.center_B())[axis];
@@ -105,7 +99,8 @@ Expected<Depth> depth_at_draft(const FloatingBody& body, const Water& water, con
 }
 
 Expected<Depth> depth_with_mass(const FloatingBody& body, const Water& water, double mass, const Vec3& up_B) {
-  const Expected<FloatingBody> loaded = with_mass(body, body.mass() + mass, body.center_of_mass_B());
+  const Expected<FloatingBody> loaded =
+      with_mass(body, body.mass() + mass, body.center_of_mass_B(), body.tanks());
   if (!loaded) return tl::unexpected(loaded.error());
   Depth depth;
   depth.mass = mass;

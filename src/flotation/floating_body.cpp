@@ -121,6 +121,13 @@ Expected<FloatingBody> FloatingBody::make(std::span<const PlacedMesh> meshes, do
   return body;
 }
 
+Expected<FloatingBody> with_mass(const FloatingBody& body, double mass, const Vec3& center_of_mass_B,
+                                 std::span<const Tank> tanks) {
+  std::vector<PlacedMesh> meshes;
+  for (const FloatingBody::SignedVolume& volume : body.volumes()) meshes.push_back(volume.placed);
+  return FloatingBody::make(meshes, mass, center_of_mass_B, tanks);
+}
+
 std::optional<FloatingState> floating_state(const FloatingBody& body, const Pose& pose, const Water& water) {
   const WaterPlane plane = water_plane_in_body(pose, water, body.center_B());
   if (!std::isfinite(plane.h_c) || !plane.up_B.allFinite() || is_boundary_wet(body, plane)) {

@@ -76,6 +76,10 @@ class FloatingBody {
   double reach_ = 0.0;
 };
 
+// Returns the same meshes with another mass [kg], centre of mass [m] and tanks. Errors: those of make().
+Expected<FloatingBody> with_mass(const FloatingBody& body, double mass, const Vec3& center_of_mass_B,
+                                 std::span<const Tank> tanks);
+
 struct FloatingState {
   Hydrostatics
       hydrostatics;  // of the sum, with metacentric heights; the stiffness is about center_of_mass_B()
