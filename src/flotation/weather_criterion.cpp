@@ -116,7 +116,7 @@ std::optional<WeatherCriterion> weather_criterion(const FloatingBody& body, cons
     ends.push_back(heel * kRadiansPerDegree);
   }
   std::ranges::sort(ends);
-  ends.erase(std::ranges::unique(ends).begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   const std::optional<RightingCurve> areas = righting_curve(body, water, ends, options);
   if (!areas || areas->points.size() != ends.size()) return std::nullopt;
   const auto net_area = [&](double low, double high) {  // of the arm over the lever of the gust
