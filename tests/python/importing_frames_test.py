@@ -2,7 +2,7 @@
 import math
 import unittest
 
-from importing_support import ImportTestCase, box, fixed, inertial, link, sdf
+from importing_support import ImportTestCase, box, fixed, inertial, link, mjcf, sdf, urdf
 
 HALF = math.sqrt(0.5)
 
@@ -151,6 +151,31 @@ class SumsMassesOfLinks(ImportTestCase):
         self.assertNotIn("inertia", result.body["client"])
         self.assertIn("no rigid body has the principal moments 1, 1, 9", result.output)
         self.assertIn("# - inertia [1, 1, 9, 0, 0, 0]", result.text)
+
+    def test_inertia_of_one_link_is_checked(self):
+        # The sum of both would be possible.
+        nose = link("nose", inertial(1, moments=(1, 1, 9)))
+        result = self.import_model(sdf(link() + nose + fixed("base", "nose")))
+        self.assertNotIn("inertia", result.body["client"])
+        self.assertIn("link 'nose': no rigid body has the principal moments 1, 1, 9", result.output)
+        self.assertNotIn("link 'base'", result.output)
+
+    def test_rod_among_links_counts(self):
+        nose = link("nose", inertial(1, moments=(0, 1, 1)), pose("3 0 0 0 0 0"))
+        result = self.import_model(sdf(link(inside=box() + inertial(2)) + nose + fixed("base", "nose")))
+        self.assert_numbers(result.body["client"]["inertia"], [80, 97, 107])
+        self.assertIn("link 'nose': no rigid body has the principal moments 0, 1, 1", result.output)
+
+    def test_inertia_without_mass_is_left_out(self):
+        ghost = link("ghost", inertial(0, moments=(1, 1, 9)))
+        result = self.import_model(sdf(link() + ghost + fixed("base", "ghost")))
+        self.assert_numbers(result.body["client"]["inertia"], [80, 90, 100])
+        self.assertIn("link 'ghost' has no mass, but the principal moments 1, 1, 9", result.output)
+        for model, name in (
+            (urdf(mass=0), "boat.urdf"),
+            (mjcf("<inertial pos='0 0 0' mass='0' diaginertia='1 1 1'/><geom type='box' size='1 1 1'/>"), "boat.xml"),
+        ):
+            self.assertIn("has no mass, but the principal moments", self.import_model(model, name=name).output)
 
     def test_automatic_inertia_follows_from_geometry(self):
         inside = box(size="2 1 1") + "<inertial auto='true'><density>600</density></inertial>"

@@ -167,6 +167,17 @@ class ConvertsHydrodynamics(ImportTestCase):
         neutral = self.loads(uuv("<type>fossen</type>", "<neutrally_buoyant>1</neutrally_buoyant>"))
         self.assertIn("declares a volume of 0.5 m^3", neutral.output)
 
+    def test_impossible_volumes_and_densities_are_refused(self):
+        for inside, density, words in (
+            ("<volume>-1</volume>", 1000, "declares a volume of -1 m^3 for the link 'base'"),
+            ("<volume>nan</volume>", 1000, "<volume> is 'nan'"),
+            ("<volume>1</volume><offset_volume>-1</offset_volume>", 1000, "declares a volume of 0 m^3"),
+            ("<neutrally_buoyant>1</neutrally_buoyant>", 0, "the density of the water is 0 kg/m^3"),
+        ):
+            with self.subTest(inside=inside):
+                text = uuv("<type>fossen</type>", inside, f"<fluid_density>{density}</fluid_density>")
+                self.assert_refused(sdf(link() + text), words, "model.sdf:1")
+
     def test_coefficients_of_turned_link(self):
         # The nose is turned by 90 degrees about z: its x is the body's y. It is at x = 2.
         model = link() + link("nose", inertial(1), "<pose degrees='true'>2 0 0 0 0 90</pose>") + fixed("base", "nose")

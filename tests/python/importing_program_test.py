@@ -5,7 +5,7 @@ import sys
 import unittest
 
 import numpy as np
-from importing_support import BOX_OBJ, ImportTestCase, box, fixed, inertial, link, sdf
+from importing_support import BOX_OBJ, ImportTestCase, box, fixed, inertial, link, mjcf, sdf, urdf, urdf_joint
 
 from buoyancy.importing import xml_file
 
@@ -154,6 +154,44 @@ class RefusesBrokenModels(ImportTestCase):
         self.assert_refused(sdf(link(inside=box(size="1 nan 1") + inertial())), "'1 nan 1'", "finite numbers")
         self.assert_refused(sdf(link(inside=box(size="1 1 -1") + inertial())), "lengths above 0")
         self.assert_refused(sdf(link(pose="<pose>0 0 ${z}</pose>")), "template that was not expanded")
+
+    def test_masses(self):
+        automatic = "<inertial auto='true'><density>{}</density></inertial>"
+        explicit = "<inertial pos='0 0 0' mass='{}' diaginertia='1 1 1'/><geom type='box' size='1 1 1'/>"
+        for name, model in (
+            ("model.sdf", sdf(link(inside=box() + inertial("{}")))),
+            ("model.sdf", sdf(link(inside=box() + automatic), version="1.11")),
+            ("boat.urdf", urdf("{}")),
+            ("boat.xml", mjcf(explicit)),
+            ("boat.xml", mjcf("<geom type='box' size='1 1 1' mass='{}'/>")),
+            ("boat.xml", mjcf("<geom type='box' size='1 1 1' density='{}'/>")),
+        ):
+            with self.subTest(model=model):
+                self.assert_refused(model.format("-2"), "is -2", "at least 0", f"{name}:1", name=name)
+                self.assert_refused(model.format("nan"), "is 'nan'", "finite numbers", f"{name}:1", name=name)
+
+    def test_joints_that_form_no_tree(self):
+        mast = link("mast", box() + inertial())
+        circle = "<link name='a'/><link name='b'/>"
+        for name, model, words in (
+            ("model.sdf", sdf(link() + fixed("base", "base")), "connects 'base' with itself"),
+            ("model.sdf", sdf(link() + mast + fixed("base", "mast") + fixed("mast", "base", "revolute")), "a circle ("),
+            ("boat.urdf", urdf(links="<link name='a'/>", joints=urdf_joint("a", "a")), "connects 'a' with itself"),
+            ("boat.urdf", urdf(links=circle, joints=urdf_joint("a", "b") + urdf_joint("b", "a")), "a circle ("),
+        ):
+            with self.subTest(model=model):
+                self.assert_refused(model, words, f"{name}:1", name=name)
+
+    def test_closed_chain_is_reported(self):
+        rods = [link(name, box(f"{name} box") + inertial()) for name in ("left", "right", "top")]
+        pins = [("base", "left"), ("base", "right"), ("left", "top"), ("right", "top")]
+        result = self.import_model(sdf(link() + "".join(rods) + "".join(fixed(*pin, "revolute") for pin in pins)))
+        self.assertEqual(len(result.bodies), 4)
+        self.assertIn("'top' is the child of the joints 'left to top', 'right to top': a closed chain", result.output)
+
+    def test_text_in_pieces(self):
+        result = self.import_model(sdf(link(inside=box(size="1 <x/>2.<y/>5 <!-- z -->&#51;") + inertial())))
+        self.assertEqual(result.body["part"][0]["shape"]["size"], [1, 2.5, 3])
 
     def test_capsule_without_length(self):
         geom = '<geom name="pod" type="capsule" size="0.1" fromto="1 2 3 1 2 3" mass="1"/>'

@@ -106,6 +106,23 @@ def sdf(inside, version="1.9", pose="", attributes=""):
     return f"<sdf version='{version}'><model name='vehicle' {attributes}>{pose}{inside}</model></sdf>"
 
 
+def urdf(mass=5, moments=(20, 30, 40), joints="", links=""):
+    entries = " ".join(f"i{axis}{axis}='{moment}'" for axis, moment in zip("xyz", moments))
+    return (
+        f"<robot name='boat'><link name='base'><inertial><mass value='{mass}'/>"
+        f"<inertia {entries} ixy='0' ixz='0' iyz='0'/></inertial>"
+        f"<collision><geometry><box size='1 1 1'/></geometry></collision></link>{links}{joints}</robot>"
+    )
+
+
+def urdf_joint(parent, child):
+    return f"<joint name='{parent} to {child}' type='fixed'><parent link='{parent}'/><child link='{child}'/></joint>"
+
+
+def mjcf(inside="<geom type='box' size='1 1 1'/>"):
+    return f"<mujoco><worldbody><body name='b'><freejoint/>{inside}</body></worldbody></mujoco>"
+
+
 def world(*plugins, model=None, gravity=""):
     inside = model or f"<model name='vehicle'>{link()}</model>"
     return f"<sdf version='1.9'><world name='sea'>{gravity}{''.join(plugins)}{inside}</world></sdf>"

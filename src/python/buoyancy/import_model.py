@@ -118,6 +118,7 @@ class Importer:
     def __init__(self, options):
         self.options, self.report = options, Report()
         self.model, search = read_model(options.model, options, self.report)
+        self.model.check_joints(self.report)
         self.parts = geometry.PartMaker(search, self.report, options.close_holes)
         self.water = hydrodynamics.Hydrodynamics(self.model, self.report)
         self.text = scene_toml.SceneText()
@@ -158,11 +159,6 @@ class Importer:
             self.report.leave_out(f"gravity 0 ({model.gravity_source}): the scene has its default")
         text.table("water")
         value, source = water.get("density", (1025.0, "not stated by the model: sea water"))
-        if not value > 0:
-            raise ImportFailure(
-                f"{source}: the density of the fluid is {value:g} kg/m^3; expected above 0. Likely cause: "
-                "a mistyped number. Correct the model."
-            )
         text.key("density", value, f"kg/m^3, {source}")
         if "level" in water:
             text.key("level", water["level"][0], f"m, {water['level'][1]}")
@@ -252,7 +248,7 @@ class Importer:
                     density = 1000.0 if density is None else density
                     masses.append(mass.of_solid(solid, density, frames.compose(poses[link.name], shape.pose)))
             elif link.inertial:
-                masses.append(mass.of_inertial(link.inertial, poses[link.name]))
+                masses.append(mass.of_link(link, poses[link.name], self.report))
         return mass.total(masses)
 
     def _write_client(self, total, root, links, name):
@@ -267,20 +263,16 @@ class Importer:
             text.key("center_of_mass", scene_toml.vector(total.center), "m, in the frame of the body")
             i = total.inertia
             entries = scene_toml.vector([i[0][0], i[1][1], i[2][2], i[0][1], i[0][2], i[1][2]])
-            if mass.is_possible(i):
+            if total.possible:
                 text.key(
                     "inertia",
                     entries if any(entries[3:]) else entries[:3],
                     "kg m^2, about the centre of mass, in the axes of the body",
                 )
             else:
-                moments = ", ".join(f"{m:.4g}" for m in mass.principal_moments(i))
-                self.report.warn(
-                    f"body '{name}': no rigid body has the principal moments {moments} kg m^2; expected each "
-                    "above 0 and at most the sum of the others. The inertia of the volume is used instead: "
-                    "correct the model"
+                self.report.leave_out(
+                    f"inertia [{', '.join(f'{e:.6g}' for e in entries)}] of '{name}': the scene has that of its volume"
                 )
-                self.report.leave_out(f"inertia [{', '.join(f'{e:.6g}' for e in entries)}] of '{name}'")
         pose = frames.compose(self.model.pose, root.pose)
         text.key("position", scene_toml.vector(pose[0]), f"m, {self.model.source}")
         text.key("orientation", scene_toml.quaternion(pose[1]), f"w, x, y, z, {self.model.source}")
@@ -389,7 +381,7 @@ class Importer:
             if declared.volume is not None and abs(declared.volume - volume) > _VOLUME_DIFFERENCE * volume:
                 self.report.warn(
                     f"body '{name}': the model declares a volume of {declared.volume:.6g} m^3, its geometry has "
-                    f"{volume:.6g} m^3 ({100 * (volume / declared.volume - 1) if declared.volume else 0:+.3g} "
+                    f"{volume:.6g} m^3 ({100 * (volume / declared.volume - 1):+.3g} "
                     f"%). The scene uses the geometry: scaling lengths by "
                     f"{(declared.volume / volume) ** (1 / 3):.5g} would match ({declared.source})"
                 )

@@ -36,6 +36,7 @@ def group_links(model, options, report):
 
     def find(name):
         while leader[name] != name:
+            leader[name] = leader[leader[name]]  # so that a long chain is not followed again and again
             name = leader[name]
         return name
 
@@ -52,7 +53,7 @@ def group_links(model, options, report):
         groups.setdefault(find(name), []).append(name)
     result = []
     for names in groups.values():
-        roots = [name for name in names if name not in children] or names
+        roots = [name for name in names if name not in children]
         root = model.canonical if model.canonical in roots else roots[0]
         result.append(Group(kept[root], [kept[name] for name in names]))
     return _without_accessories(model, result, options, report)

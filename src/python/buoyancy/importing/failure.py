@@ -11,10 +11,10 @@ def fail(where, actual, expected, cause, hint):
 
 
 class Report:
-    """Three lists of sentences. A sentence that is there already is not repeated."""
+    """Three sets of sentences, in the order in which they are said first."""
 
     def __init__(self):
-        self.notes, self.warnings, self.not_converted = [], [], []
+        self.notes, self.warnings, self.not_converted = {}, {}, {}
 
     def note(self, text):
         _append(self.notes, text)
@@ -27,6 +27,4 @@ class Report:
 
 
 def _append(sentences, text):
-    text = " ".join(text.split())
-    if text not in sentences:
-        sentences.append(text)
+    sentences[" ".join(text.split())] = None

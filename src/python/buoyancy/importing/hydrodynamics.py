@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Optional
 
 from . import frames
+from .failure import fail
 
 _FORCES, _VELOCITIES = "xyzkmn", "uvwpqr"
 # xU, xUabsU, xUU, xDotU, and the same with underscores or other capitals: x_u, x_u_abs_u, x_dot_u.
@@ -102,6 +103,9 @@ class Hydrodynamics:
         return None
 
     def set_water(self, key, value, element):
+        if key == "density" and not value > 0:
+            fail(element.where, f"the density of the water is {value:g} kg/m^3", "above 0 kg/m^3",
+                 "a mistyped number", "Correct the model")
         if key in self.water and self.water[key][0] != value:
             self.report.warn(
                 f"{key} of the water is {self.water[key][0]} ({self.water[key][1]}) and {value} "
@@ -346,7 +350,11 @@ class Hydrodynamics:
             model = element.find("hydrodynamic_model") or element
             factor = element.number("scaling_volume", model.number("scaling_volume", 1.0))
             offset = element.number("offset_volume", model.number("offset_volume", 0.0))
-            declared.volume = max(0.0, factor * (volume + offset))
+            declared.volume = factor * (volume + offset)
+            if not declared.volume > 0:
+                fail((element.find("volume") or element).where,
+                     f"the plugin declares a volume of {declared.volume:g} m^3 for the link '{link}'", "above 0 m^3",
+                     "a mistyped number, or a scaling or offset of another vehicle", "Correct or remove <volume>")
         center = element.find("center_of_buoyancy")
         if center is not None:
             declared.center = tuple(center.numbers(3))

@@ -1,6 +1,7 @@
 """Sums masses, centres of mass and inertias of links that are one body."""
-import math
 from dataclasses import dataclass
+
+import numpy as np
 
 from . import frames
 
@@ -12,12 +13,32 @@ class Mass:
     mass: float
     center: tuple
     inertia: list
+    possible: bool = True  # whether each inertia that is summed is one of a rigid body, or of a rod or a point
 
 
-def of_inertial(inertial, pose):
+def of_link(link, pose, report):
     """The mass of a link's inertial in the frame of the body; `pose` is that of the link in that frame."""
+    inertial, inertia = link.inertial, link.inertial.inertia
+    low, middle, high = principal_moments(inertia)
+    moments = f"the principal moments {low:.4g}, {middle:.4g}, {high:.4g} kg m^2"
+    if inertial.mass == 0.0 and any(map(any, inertia)):
+        report.warn(
+            f"link '{link.name}' has no mass, but {moments}; expected a mass above 0, or no inertia. Its inertia is "
+            f"left out: correct the model ({inertial.source})"
+        )
+        inertia = [[0.0] * 3 for _ in range(3)]
+    elif inertial.mass > 0.0 and not is_possible(inertia):
+        report.warn(
+            f"link '{link.name}': no rigid body has {moments}; expected each above 0 and at most the sum of the "
+            f"others. Likely cause: a mistyped number, or another unit. Correct the model ({inertial.source})"
+        )
     rotation = frames.product(pose[1], inertial.rotation)
-    return Mass(inertial.mass, frames.transform(pose, inertial.center), frames.turned(inertial.inertia, rotation))
+    return Mass(
+        inertial.mass,
+        frames.transform(pose, inertial.center),
+        frames.turned(inertia, rotation),
+        inertial.mass == 0.0 or (low >= -1e-9 * high and _obeys_triangle(low, middle, high)),
+    )
 
 
 def of_solid(solid, density, pose):
@@ -38,29 +59,19 @@ def total(masses):
         for i in range(3):
             for j in range(3):
                 inertia[i][j] += m.inertia[i][j] + m.mass * ((square if i == j else 0.0) - d[i] * d[j])
-    return Mass(mass, center, inertia)
+    return Mass(mass, center, inertia, all(m.possible for m in masses) and is_possible(inertia))
 
 
 def principal_moments(inertia):
-    """Eigenvalues of a symmetric 3 x 3 matrix, ascending, in closed form."""
-    off = inertia[0][1] ** 2 + inertia[0][2] ** 2 + inertia[1][2] ** 2
-    mean = sum(inertia[i][i] for i in range(3)) / 3
-    spread = math.sqrt((sum((inertia[i][i] - mean) ** 2 for i in range(3)) + 2 * off) / 6)
-    if spread == 0:
-        return [mean] * 3
-    b = [[(inertia[i][j] - (mean if i == j else 0.0)) / spread for j in range(3)] for i in range(3)]
-    determinant = (
-        b[0][0] * (b[1][1] * b[2][2] - b[1][2] * b[2][1])
-        - b[0][1] * (b[1][0] * b[2][2] - b[1][2] * b[2][0])
-        + b[0][2] * (b[1][0] * b[2][1] - b[1][1] * b[2][0])
-    )
-    angle = math.acos(max(-1.0, min(1.0, determinant / 2))) / 3
-    largest = mean + 2 * spread * math.cos(angle)
-    smallest = mean + 2 * spread * math.cos(angle + 2 * math.pi / 3)
-    return [smallest, 3 * mean - largest - smallest, largest]
+    """Eigenvalues of a symmetric 3 x 3 matrix, ascending."""
+    return np.linalg.eigvalsh(inertia)
 
 
 def is_possible(inertia):
     """Whether a rigid body can have this inertia; the limit is that of the scene file."""
     low, middle, high = principal_moments(inertia)
-    return low > 0 and high <= low + middle + 0.01 * high
+    return low > 0 and _obeys_triangle(low, middle, high)
+
+
+def _obeys_triangle(low, middle, high):
+    return high <= low + middle + 0.01 * high

@@ -121,7 +121,7 @@ class MjcfReader:
         if parent:
             joints = body.all(*_JOINTS)
             joint = joints[0].get("name", "") if joints else ""
-            model.joints.append(Joint(joint or f"joint of {name}", parent, name, not joints))
+            model.joints.append(Joint(joint or f"joint of {name}", parent, name, not joints, body))
         else:
             model.canonical = name
         for geom, offset, geom_class in self._geoms(body, childclass=childclass):
@@ -145,7 +145,8 @@ class MjcfReader:
         else:
             xx, yy, zz = element.attribute_numbers("diaginertia", 3, [0.0] * 3)
             inertia = [[xx, 0.0, 0.0], [0.0, yy, 0.0], [0.0, 0.0, zz]]
-        return Inertial(element.attribute_numbers("mass", 1, [0.0])[0], pose[0], pose[1], inertia, element.source)
+        mass = element.attribute_numbers("mass", 1, [0.0], minimum=0.0)[0]
+        return Inertial(mass, pose[0], pose[1], inertia, element.source)
 
     def _angle(self, value):
         return value if self.compiler.get("angle", "degree") == "radian" else math.radians(value)
@@ -183,8 +184,8 @@ class MjcfReader:
         kind = values.get("type", "mesh" if "mesh" in values and "type" not in values else "sphere")
         name = values.get("name") or f"geom of {body}"
 
-        def numbers(key, count=None):
-            return geom.numbers(count, values[key], f"{key} of '{name}'") if key in values else None
+        def numbers(key, count=None, minimum=-math.inf):
+            return geom.numbers(count, values[key], f"{key} of '{name}'", minimum) if key in values else None
 
         if values.get("fluidshape", "none") != "none":
             self.report.leave_out(
@@ -204,8 +205,8 @@ class MjcfReader:
             half = math.sqrt(sum(c * c for c in axis)) / 2
             size = [size[0], half] if kind in ("capsule", "cylinder") else [size[0], size[0], half]
         visual = values.get("contype", "1") == "0" and values.get("conaffinity", "1") == "0"
-        density = numbers("density", 1)
-        mass = numbers("mass", 1)
+        density = numbers("density", 1, minimum=0.0)
+        mass = numbers("mass", 1, minimum=0.0)
         common = {
             "pose": frames.compose(offset, pose),
             "name": name,

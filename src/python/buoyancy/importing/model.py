@@ -1,7 +1,9 @@
 """What every format is read into. Lengths in m, angles in rad, masses in kg; poses are in the frame of the model."""
 from dataclasses import dataclass, field
+from graphlib import CycleError, TopologicalSorter
 from typing import Optional
 
+from .failure import fail
 from .frames import IDENTITY
 
 # The density [kg/m^3] with which gz-sim and MuJoCo compute the mass of a body from its geometry.
@@ -60,6 +62,7 @@ class Joint:
     parent: str  # a link, or "world"
     child: str
     fixed: bool
+    element: object
 
 
 @dataclass
@@ -84,3 +87,27 @@ class Model:
     gravity: Optional[tuple] = None
     gravity_source: str = ""
     canonical: str = ""  # the link whose frame a body prefers
+
+    def check_joints(self, report):
+        """Refuses joints in a circle, and warns of a link that is the child of several joints."""
+        joints = {}  # of each child: parent, joint
+        for joint in self.joints:
+            if joint.parent == joint.child:
+                fail(joint.element.where, f"the joint '{joint.name}' connects '{joint.parent}' with itself",
+                     "two different links", "a name that was copied", "Correct its parent or its child")
+            if joint.parent in self.links and joint.child in self.links:
+                joints.setdefault(joint.child, {})[joint.parent] = joint
+        try:
+            TopologicalSorter(joints).prepare()
+        except CycleError as error:
+            circle = error.args[1]
+            joint = joints[circle[1]][circle[0]]
+            fail(joint.element.where, f"the joint '{joint.name}' closes a circle ({' -> '.join(circle)})",
+                 "a tree of links", "a joint whose parent and child are exchanged", "Correct or remove one of its joints")
+        for child, parents in joints.items():
+            if len(parents) > 1:
+                names, last = [f"'{joint.name}'" for joint in parents.values()], [*parents.values()][-1]
+                report.warn(
+                    f"the link '{child}' is the child of the joints {', '.join(names)}: a closed chain, which only "
+                    f"your simulator can hold together ({last.element.source})"
+                )

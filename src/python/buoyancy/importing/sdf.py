@@ -216,7 +216,8 @@ class SdfReader:
                 if found is not None and not text and found.find("link_name") is not None:
                     text = found.child_text("link_name", "")
                 ends.append(scope.link_of(text, element))
-            model.joints.append(Joint(prefix + element.get("name", ""), *ends, element.get("type", "") == "fixed"))
+            name, is_fixed = prefix + element.get("name", ""), element.get("type", "") == "fixed"
+            model.joints.append(Joint(name, *ends, is_fixed, element))
         holders = [scope.element] + ([scope.include] if scope.include is not None else [])
         for holder in holders:
             for plugin in holder.all("plugin"):
@@ -239,7 +240,7 @@ class SdfReader:
         link.mass_from_geometry = inertial is not None and inertial.get("auto", "") in ("true", "1")
         if not link.mass_from_geometry:
             link.inertial = self._inertial(inertial, element, in_link)
-        density = None if inertial is None else inertial.number("density")
+        density = None if inertial is None else inertial.number("density", minimum=0.0)
         for child in element.all("collision", "visual"):
             geometry = child.find("geometry")
             if geometry is None:
@@ -247,7 +248,7 @@ class SdfReader:
             parsed = self._geometry(geometry, child, in_link(child))
             if parsed is not None:
                 parsed.visual = child.tag == "visual"
-                parsed.density = child.number("density", density)
+                parsed.density = child.number("density", density, minimum=0.0)
                 link.geometry.append(parsed)
         return link
 
@@ -264,7 +265,11 @@ class SdfReader:
         xx, yy, zz = (entry(tag, 1.0) for tag in ("ixx", "iyy", "izz"))
         xy, xz, yz = (entry(tag, 0.0) for tag in ("ixy", "ixz", "iyz"))
         result = Inertial(
-            inertial.number("mass", 1.0), pose[0], pose[1], [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], inertial.source
+            inertial.number("mass", 1.0, minimum=0.0),
+            pose[0],
+            pose[1],
+            [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]],
+            inertial.source,
         )
         fluid = inertial.find("fluid_added_mass")
         if fluid is not None:

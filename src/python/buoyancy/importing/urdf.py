@@ -37,7 +37,7 @@ def _link(element, name, report):
     inertial = element.find("inertial")
     if inertial is not None:
         mass, inertia = inertial.find("mass"), inertial.find("inertia")
-        value = 0.0 if mass is None else mass.attribute_numbers("value", 1, [0.0])[0]
+        value = 0.0 if mass is None else mass.attribute_numbers("value", 1, [0.0], minimum=0.0)[0]
         entry = {
             key: 0.0 if inertia is None else inertia.attribute_numbers(key, 1, [0.0])[0]
             for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
@@ -101,7 +101,7 @@ def _place(root, model):
                  "a joint that was copied", "Remove one of them")
         origins[ends[1]] = _origin(element)
         children.setdefault(ends[0], []).append(ends[1])
-        model.joints.append(Joint(element.get("name", ""), *ends, element.get("type", "") == "fixed"))
+        model.joints.append(Joint(element.get("name", ""), *ends, element.get("type", "") == "fixed", element))
     roots = [name for name in model.links if name not in origins]
     if len(roots) != 1:
         fail(root.where, f"has {len(roots)} root links ({', '.join(roots) or 'each is the child of a joint'})",

@@ -56,7 +56,7 @@ class Element:
         found = self.find(path)
         return default if found is None or not found.text.strip() else found.text.strip()
 
-    def numbers(self, count=None, text=None, what=None):
+    def numbers(self, count=None, text=None, what=None, minimum=-math.inf):
         """The numbers in the text; `count` is how many, or a tuple of what is allowed."""
         words = (self.text if text is None else text).replace(",", " ").split()
         what = what or f"<{self.tag}>"
@@ -71,19 +71,22 @@ class Element:
         if allowed and len(values) not in allowed:
             fail(self.where, f"{what} has {len(values)} numbers", " or ".join(map(str, allowed)),
                  "numbers that are missing or too many", "Correct the model")
+        if any(value < minimum for value in values):
+            fail(self.where, f"{what} is {', '.join(f'{value:g}' for value in values)}", f"at least {minimum:g}",
+                 "a mistyped sign", "Correct the model")
         return values
 
-    def number(self, path, default=None):
+    def number(self, path, default=None, minimum=-math.inf):
         found = self.find(path)
-        return default if found is None or not found.text.strip() else found.numbers(1)[0]
+        return default if found is None or not found.text.strip() else found.numbers(1, minimum=minimum)[0]
 
     def flag(self, path, default=False):
         return self.child_text(path, str(default)).lower() in ("true", "1")
 
-    def attribute_numbers(self, name, count=None, default=None):
+    def attribute_numbers(self, name, count=None, default=None, minimum=-math.inf):
         if name not in self.attributes:
             return default
-        return self.numbers(count, self.attributes[name], f"{name} of <{self.tag}>")
+        return self.numbers(count, self.attributes[name], f"{name} of <{self.tag}>", minimum)
 
 
 def _short(text):
@@ -127,19 +130,23 @@ class XmlReader:
                      f"at most {MAX_ELEMENTS:,}, nested at most {MAX_DEPTH} deep",
                      "a file that was made to exhaust " "memory", "Use a smaller model")
             element = Element(tag, attributes, str(path), parser.CurrentLineNumber)
-            (stack[-1].children if stack else root).append(element)
-            stack.append(element)
+            (stack[-1][0].children if stack else root).append(element)
+            stack.append((element, []))
+
+        def end(tag):
+            element, pieces = stack.pop()
+            element.text = "".join(pieces)
 
         def characters(text):
             if stack:
-                stack[-1].text += text
+                stack[-1][1].append(text)
 
         def doctype(name, system_id, public_id, has_internal_subset):
             if system_id or public_id or has_internal_subset:
                 refuse("a document type")
 
         parser.StartElementHandler = start
-        parser.EndElementHandler = lambda tag: stack.pop()
+        parser.EndElementHandler = end
         parser.CharacterDataHandler = characters
         parser.StartDoctypeDeclHandler = doctype
         parser.EntityDeclHandler = lambda *arguments: refuse("an entity")
