@@ -102,7 +102,11 @@ class ImportsGeometry(ImportTestCase):
     def test_millimetres_are_recognised(self):
         inside = mesh("hull.obj", "<scale>1000 1000 1000</scale>") + inertial(416)
         result = self.import_model(sdf(link(inside=inside)), files={"hull.obj": BOX_OBJ})
-        self.assertIn("scale = 0.001 gives 416 kg/m^3", result.output)
+        self.assertRegex(result.output, "warning: body 1: mass over volume .* 0.001 .* 416 kg/m\\^3")
+        with self.assertWarns(UserWarning) as opened:
+            result.open()
+        for text in (result.output, result.text):
+            self.assertIn(str(opened.warning).partition(": ")[2], text)
 
     def test_holes_are_closed_aloud(self):
         lines = BOX_OBJ.splitlines()

@@ -22,8 +22,6 @@ from .importing.mjcf import MjcfReader
 from .importing.urdf import read_urdf
 from .importing.xml_file import XmlReader
 
-_PLAUSIBLE_DENSITY = (20.0, 20000.0)  # kg/m^3, those of --check
-_UNITS = (0.001, 0.01, 0.0254, 0.3048, 1000.0)
 _VOLUME_DIFFERENCE = 1e-3  # share of the volume from which a declared one is a warning
 _CENTER_DIFFERENCE = 1e-4  # m
 _OVERLAP = 1e-3  # share of the smaller part
@@ -125,7 +123,29 @@ class Importer:
         self.files = {}  # of meshes to write: name, contents
         self.bodies = []
 
-    def scene(self):
+    def write(self):
+        """Writes the scene and its meshes, with the warnings of whoever opens it."""
+        self._write_scene()
+        output = self.options.output
+        folder = Path(output).resolve().parent if output else Path.cwd()
+        for name, contents in self.files.items():
+            (folder / name).parent.mkdir(exist_ok=True)
+            (folder / name).write_text(contents, encoding="utf-8")
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always")
+            try:
+                _core.Scene.from_text(str(self.text), folder)
+            except _core.Error as error:
+                raise ImportFailure(f"{self.options.model}: the scene that it becomes is refused: {error}") from None
+        for warning in found:
+            self.report.warn(str(warning.message).replace("Scene.from_text(): ", "", 1))
+        self._write_report()
+        if output:
+            Path(output).write_text(str(self.text), encoding="utf-8")
+        else:
+            print(self.text, end="")
+
+    def _write_scene(self):
         text, model = self.text, self.model
         text.comment(f"{model.name}: from {Path(self.options.model).name} ({model.format}) by buoyancy-import.")
         self._write_world()
@@ -137,12 +157,14 @@ class Importer:
                 self.report.leave_out(
                     f"coefficients of the link '{coefficients.link}', which is no body ({coefficients.source})"
                 )
+
+    def _write_report(self):
+        text = self.text
         text.comment("")
         for title, sentences in (("Warnings", self.report.warnings), ("Not converted", self.report.not_converted)):
             text.comment(f"{title}:" if sentences else f"{title}: nothing")
             for sentence in sentences:
                 text.comment(f"- {sentence}")
-        return str(text)
 
     def _write_world(self):
         text, model, water = self.text, self.model, self.water.water
@@ -194,14 +216,11 @@ class Importer:
         for index, (link, part) in enumerate(parts):
             self._write_part(number, index, link, part)
         self._check_overlaps(parts, name)
-        total = self._mass(group, poses)
-        self._check_volume(parts, total, name)
         self._check_declared(parts, poses, name)
         if loads:
             self._write_loads(loads, poses)
-        self._write_client(
-            total, root, [link for link in group.links if link.inertial or link.mass_from_geometry], name
-        )
+        links = [link for link in group.links if link.inertial or link.mass_from_geometry]
+        self._write_client(self._mass(group, poses), root, links, name)
 
     def _write_part(self, number, index, link, part):
         text, shape = self.text, part.geometry
@@ -351,27 +370,6 @@ class Importer:
                 f"body '{name}' has several parts with meshes: buoyancyd --check reports whether they overlap"
             )
 
-    def _check_volume(self, parts, total, name):
-        volume = sum(part.solid.volume for _, part in parts)
-        if total is None or not volume > 0:
-            return
-        density, (low, high) = total.mass / volume, _PLAUSIBLE_DENSITY
-        if low <= density <= high:
-            return
-        # Choose, of the units that make the density plausible, the one that brings it nearest to that of water.
-        plausible = [unit for unit in _UNITS if low <= density / unit**3 <= high]
-        unit = min(plausible, key=lambda u: abs(math.log(density / u**3 / 1000)), default=None)
-        hint = (
-            "Check the mass and the scale of the meshes"
-            if unit is None
-            else f"scale = {unit:g} gives {density / unit ** 3:.4g} kg/m^3"
-        )
-        self.report.warn(
-            f"body '{name}': mass over volume = {total.mass:.6g} kg / {volume:.6g} m^3 = {density:.4g} kg/m^3; "
-            f"expected {low:g} to {high:g} kg/m^3. Likely cause: a mesh in another unit than metres, or a "
-            f"mass of another body. {hint}"
-        )
-
     def _check_declared(self, parts, poses, name):
         for declared in self.water.declared:
             if declared.link not in poses:
@@ -422,30 +420,11 @@ def print_report(importer, target):
     print("\n".join(lines), file=target)
 
 
-def write(importer, scene):
-    """Checks the scene as buoyancyd would, and writes it and its meshes."""
-    output = importer.options.output
-    folder = Path(output).resolve().parent if output else Path.cwd()
-    for name, contents in importer.files.items():
-        (folder / name).parent.mkdir(exist_ok=True)
-        (folder / name).write_text(contents, encoding="utf-8")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the importer has warnings of its own, and --check the others
-        try:
-            _core.Scene.from_text(scene, folder)
-        except _core.Error as error:
-            raise ImportFailure(f"{importer.options.model}: the scene that it becomes is refused: {error}") from None
-    if output:
-        Path(output).write_text(scene, encoding="utf-8")
-    else:
-        print(scene, end="")
-
-
 def main(argv=None, version="of the Python package buoyancy"):
     options = arguments(argv, version)
     try:
         importer = Importer(options)
-        write(importer, importer.scene())
+        importer.write()
         print_report(importer, sys.stdout if options.output else sys.stderr)
     except ImportFailure as failure:
         print(f"buoyancy-import: {' '.join(str(failure).split())}", file=sys.stderr)
