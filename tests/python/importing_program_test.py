@@ -197,6 +197,31 @@ class RefusesBrokenModels(ImportTestCase):
         result = self.import_model(sdf(link(inside=box(size="1 <x/>2.<y/>5 <!-- z -->&#51;") + inertial())))
         self.assertEqual(result.body["part"][0]["shape"]["size"], [1, 2.5, 3])
 
+    def test_errors_name_path(self):
+        included = "<include><uri>model://arm</uri></include>"
+        for model, words, files in (
+            (sdf(link(inside=box(size="1 x 1"))), "/model[vehicle]/link[base]/collision[box]/geometry/box/size", {}),
+            (sdf(link() + fixed("base", "mast")), "/sdf/model[vehicle]/joint[base to mast]: no link", {}),
+            (sdf(box()), "/sdf/model[vehicle]: the model 'vehicle' has no link", {}),
+            (sdf(link() + included), "/sdf/model[vehicle]/include: ", {"arm/model.config": "<model/>"}),
+            (sdf(link() + "<frame><pose/></frame>"), "/sdf/model[vehicle]/frame: the <frame> has no name", {}),
+            (sdf(link(inside=box() + inertial("1e13"))), "/inertial/mass: <mass> is '1e13'; expected", {}),
+        ):
+            with self.subTest(words=words):
+                self.assert_refused(model, "model.sdf:1: /sdf/model[vehicle]", words, files=files)
+        wave = "<wavefield><wave><model>CWR</model><amplitude>1e6</amplitude></wave></wavefield>"
+        high = sdf(link() + f"<plugin filename='libSurface.so' name='vrx::Surface'>{wave}</plugin>")
+        self.assert_refused(high, "model[vehicle]: the scene", "# the waves of the wavefield, model.sdf:1")
+
+    def test_frames_that_are_nested_too_deeply(self):
+        frames = [
+            f"<frame name='f{i}'><pose relative_to='f{i + 1}'/></frame><frame name='g{i}' attached_to='g{i + 1}'/>"
+            for i in range(2000)
+        ]
+        for name in ("f0", "g0"):
+            pose = f"<pose relative_to='{name}'/>"
+            self.assert_refused(sdf(link(pose=pose) + "".join(frames)), "more than 200 others")
+
     def test_capsule_without_length(self):
         geom = '<geom name="pod" type="capsule" size="0.1" fromto="1 2 3 1 2 3" mass="1"/>'
         text = f"<mujoco><worldbody><body name='a'>{geom}</body></worldbody></mujoco>"

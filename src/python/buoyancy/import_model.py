@@ -10,6 +10,7 @@ import argparse
 import itertools
 import math
 import os
+import re
 import sys
 import warnings
 from pathlib import Path
@@ -136,7 +137,9 @@ class Importer:
             try:
                 _core.Scene.from_text(str(self.text), folder)
             except _core.Error as error:
-                raise ImportFailure(f"{self.options.model}: the scene that it becomes is refused: {error}") from None
+                raise ImportFailure(
+                    f"{self.model.element.where}: the scene that it becomes is refused: {error}{self._origin_of(error)}"
+                ) from None
         for warning in found:
             self.report.warn(str(warning.message).replace("Scene.from_text(): ", "", 1))
         self._write_report()
@@ -144,6 +147,13 @@ class Importer:
             Path(output).write_text(str(self.text), encoding="utf-8")
         else:
             print(self.text, end="")
+
+    def _origin_of(self, error):
+        """Where the value is from that an error about the scene names: a comment of its line, or before it."""
+        number = re.match(r"Scene\.from_text\(\):(\d+)", str(error))
+        lines = str(self.text).splitlines()[: int(number.group(1))] if number else []
+        comments = [line for line in lines if re.search(r"#.*\w:\d", line)]
+        return f" The value is from: {comments[-1]}" if comments else ""
 
     def _write_scene(self):
         text, model = self.text, self.model
@@ -293,8 +303,8 @@ class Importer:
                     f"inertia [{', '.join(f'{e:.6g}' for e in entries)}] of '{name}': the scene has that of its volume"
                 )
         pose = frames.compose(self.model.pose, root.pose)
-        text.key("position", scene_toml.vector(pose[0]), f"m, {self.model.source}")
-        text.key("orientation", scene_toml.quaternion(pose[1]), f"w, x, y, z, {self.model.source}")
+        text.key("position", scene_toml.vector(pose[0]), f"m, {self.model.element.source}")
+        text.key("orientation", scene_toml.quaternion(pose[1]), f"w, x, y, z, {self.model.element.source}")
 
     def _write_loads(self, loads, poses):
         center, sums = None, [frames.zeros() for _ in range(3)]

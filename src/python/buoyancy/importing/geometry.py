@@ -249,7 +249,7 @@ def _submesh(path, geometry):
         if found:
             return "\n".join(kept) + "\n"
     elif suffix == ".dae":
-        root, names = XmlReader().read(path), []
+        root, names = XmlReader().read(path, geometry.element), []
         titles = {e.get("id"): (e.get("id"), e.get("name")) for e in root.walk() if e.tag == "geometry"}
         if _keep_instances(root, name, titles, names, False):
             return _xml_text(root)

@@ -291,9 +291,14 @@ class Hydrodynamics:
             value("amplitude", 0),
         )
         phase, model = value("phase", 0.0), values.get("model", "PMS")
-        words = values.get("direction", "0").split()
-        direction = math.atan2(float(words[1]), float(words[0])) if len(words) == 2 else value("direction", 0.0)
-        if model not in ("PMS", "CWR") or period <= 0 or scale <= 0 or number > (3 if model == "PMS" else 100):
+        axes = element.numbers((1, 2), values.get("direction", "0"), "<direction>")
+        direction = math.atan2(axes[1], axes[0]) if len(axes) == 2 else axes[0]
+        if (
+            model not in ("PMS", "CWR")
+            or number > (3 if model == "PMS" else 100)
+            or period <= 0
+            or not 0.01 <= scale <= 100
+        ):
             self.report.leave_out(f"wavefield: model {model}, {number} waves of {period:g} s ({element.source})")
             return
         omega = 2 * math.pi / period

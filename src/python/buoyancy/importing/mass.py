@@ -70,7 +70,7 @@ def principal_moments(inertia):
 def is_possible(inertia):
     """Whether a rigid body can have this inertia; the limit is that of the scene file."""
     low, middle, high = principal_moments(inertia)
-    return low > 0 and _obeys_triangle(low, middle, high)
+    return low > 1e-9 * high and _obeys_triangle(low, middle, high)
 
 
 def _obeys_triangle(low, middle, high):

@@ -38,7 +38,7 @@ class MjcfReader:
             fail(root.where, f"has {len(chosen)} bodies to choose from ({names})", "one body of <worldbody>",
                  "a scene of several vehicles, or a misspelt name", "Choose one with --model NAME")
         body, pose, childclass = chosen[0]
-        model = Model(body.get("name") or root.get("model", "vehicle"), body.source, "MJCF")
+        model = Model(body.get("name") or root.get("model") or "vehicle", body, "MJCF")
         self._read_body(body, "", frames.IDENTITY, childclass, model)
         # The frame of the model is that of its first body.
         model.pose = frames.compose(pose, self._pose(body, {}))
@@ -62,7 +62,7 @@ class MjcfReader:
                 if depth >= _MAX_INCLUDES:
                     fail(child.where, "files include each other too deeply", f"at most {_MAX_INCLUDES} levels",
                          "a file that includes itself", "Break the cycle")
-                included = self.reader.read(self.search.find(child.get("file", ""), child))
+                included = self.reader.read(self.search.find(child.get("file", ""), child), child)
                 self._include(included, depth + 1)
                 children += included.children
             else:
@@ -158,6 +158,10 @@ class MjcfReader:
             return element.numbers(count, values[name], f"{name} of <{element.tag}>") if name in values else None
 
         q = (1.0, 0.0, 0.0, 0.0)
+        for name, (first, last) in {"axisangle": (0, 3), "xyaxes": (0, 3), "zaxis": (0, 3)}.items():
+            if name in values and not any(element.numbers(None, values[name])[first:last]):
+                fail(element.where, f"{name} of <{element.tag}> has an axis of length 0", "a direction",
+                     "numbers that are missing", "Correct it")
         if numbers("quat", 4):
             q = frames.normalized(numbers("quat", 4))
         elif numbers("axisangle", 4):
@@ -173,11 +177,12 @@ class MjcfReader:
             x = frames.normalized((0.0, *both[:3]))
             along = sum(a * b for a, b in zip(x[1:], both[3:]))
             y = frames.normalized((0.0, *(b - along * a for a, b in zip(x[1:], both[3:]))))
-            q = frames.from_columns(x[1:], y[1:], frames.product(x, y)[1:])
+            q = y and frames.from_columns(x[1:], y[1:], frames.product(x, y)[1:])
         elif numbers("zaxis", 3):
             q = frames.turning_z_to(numbers("zaxis", 3))
         if q is None:
-            fail(element.where, "a quaternion of length 0", "a rotation", "numbers that are missing", "Correct it")
+            fail(element.where, "a quaternion of length 0, or two axes along one line", "a rotation",
+                 "numbers that are missing", "Correct it")
         return (tuple(numbers("pos", 3) or (0.0, 0.0, 0.0)), q)
 
     def _geometry(self, geom, offset, values, body):

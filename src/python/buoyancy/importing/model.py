@@ -78,7 +78,7 @@ class Plugin:
 @dataclass
 class Model:
     name: str
-    source: str
+    element: object
     format: str
     links: dict = field(default_factory=dict)
     joints: list = field(default_factory=list)
@@ -103,7 +103,8 @@ class Model:
             circle = error.args[1]
             joint = joints[circle[1]][circle[0]]
             fail(joint.element.where, f"the joint '{joint.name}' closes a circle ({' -> '.join(circle)})",
-                 "a tree of links", "a joint whose parent and child are exchanged", "Correct or remove one of its joints")
+                 "a tree of links", "a joint whose parent and child are exchanged",
+                 "Correct or remove one of its joints")
         for child, parents in joints.items():
             if len(parents) > 1:
                 names, last = [f"'{joint.name}'" for joint in parents.values()], [*parents.values()][-1]

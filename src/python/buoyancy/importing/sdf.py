@@ -6,10 +6,11 @@ attached to links, and names such as arm::hand reach into nested models. Older f
 import math
 
 from . import frames
-from .failure import ImportFailure, fail
+from .failure import fail
 from .model import Geometry, Inertial, Joint, Link, Model, Plugin
 
 _MAX_INCLUDES = 16
+_MAX_CHAIN = 200  # of frames that are relative to each other
 _ADDED_MASS_AXES = "xyzpqr"
 
 
@@ -22,14 +23,18 @@ class _Scope:
         self.entries = {}  # name: the element of a link, frame or joint
         self.models = {}  # name: a scope
         for child in element.all("link", "frame", "joint"):
-            self.entries.setdefault(child.get("name", ""), child)
+            if not child.get("name"):
+                fail(child.where, f"the <{child.tag}> has no name", "an attribute name", "a deleted line", "Name it")
+            self.entries.setdefault(child.get("name"), child)
 
     def pose_of(self, name, where, visited=()):
         """The pose of a frame, in this model's own frame."""
         if name in ("__model__", "", "world") and name not in self.entries:
             return frames.IDENTITY
-        if name in visited:
-            fail(where.where, f"the frame '{name}' is relative to itself ({' -> '.join((*visited, name))})",
+        if name in visited or len(visited) > _MAX_CHAIN:
+            chain = " -> ".join((*visited[-5:], name))
+            fail(where.where,
+                 f"the frame '{name}' is relative to itself, or to more than {_MAX_CHAIN} others ({chain})",
                  "frames without a cycle", "a relative_to that was mistyped", "Correct it")
         if name in self.entries:
             element = self.entries[name]
@@ -78,9 +83,9 @@ class _Scope:
         """The full name of the link that a frame is attached to."""
         if name == "world":
             return "world"
-        if name in visited:
-            fail(where.where, f"'{name}' is attached to itself", "a frame that is attached to a link",
-                 "an attached_to that was mistyped", "Correct it")
+        if name in visited or len(visited) > _MAX_CHAIN:
+            fail(where.where, f"'{name}' is attached to itself, or through more than {_MAX_CHAIN} others",
+                 "a frame that is attached to a link", "an attached_to that was mistyped", "Correct it")
         if name in self.entries:
             element = self.entries[name]
             if element.tag == "link":
@@ -159,7 +164,7 @@ class SdfReader:
         name, element = chosen[0]
         scope = self._scope(element, outer, 0)
         outer.models[scope.name] = scope
-        model = Model(scope.name, element.source, "SDF", pose=scope.model_pose())
+        model = Model(scope.name or "vehicle", element, "SDF", pose=scope.model_pose())
         self._flatten(scope, frames.IDENTITY, model)
         model.canonical = scope.canonical(element)
         if world is not None:
@@ -191,7 +196,7 @@ class SdfReader:
                  "a model that includes itself", "Break the cycle")
         uri = include.child_text("uri", "")
         found = self.search.find(uri, include, "model")
-        root = self.reader.read(model_file(found) if found.is_dir() else found)
+        root = self.reader.read(model_file(found, include) if found.is_dir() else found, include)
         model = root.find("model")
         if model is None:
             fail(root.where, "contains no model", "an SDF file with a model", f"'{uri}' names another file",
@@ -320,8 +325,8 @@ class SdfReader:
         return None
 
 
-def model_file(folder):
-    """The newest SDF file that the model.config of a folder names."""
+def model_file(folder, element=None):
+    """The newest SDF file that the model.config of a folder names; `element` names the folder."""
     from .xml_file import XmlReader
 
     config = folder / "model.config"
@@ -335,7 +340,5 @@ def model_file(folder):
             return folder / max(named, key=lambda pair: [int(n) if n.isdigit() else 0 for n in pair[0].split(".")])[1]
     if (folder / "model.sdf").exists():
         return folder / "model.sdf"
-    raise ImportFailure(
-        f"{folder}: has neither model.config nor model.sdf; expected the folder of an SDF model. "
-        "Likely cause: another folder. Name the model file."
-    )
+    return fail(f"{element.where}: {folder}" if element else folder, "has neither model.config nor model.sdf",
+                "the folder of an SDF model", "another folder", "Name the model file")

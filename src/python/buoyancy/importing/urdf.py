@@ -5,7 +5,7 @@ from .model import Geometry, Inertial, Joint, Link, Model, Plugin
 
 
 def read_urdf(root, report):
-    model = Model(root.get("name", "vehicle"), root.source, "URDF")
+    model = Model(root.get("name") or "vehicle", root, "URDF")
     for element in root.all("link"):
         name = element.get("name", "")
         if name in model.links:

@@ -12,20 +12,26 @@ from .failure import ImportFailure, fail
 MAX_BYTES = 32 * 1024 * 1024  # of all files of a model
 MAX_DEPTH = 200
 MAX_ELEMENTS = 1_000_000
+_MAX_NUMBER = 1e12  # products of several of these are finite
 
 
 class Element:
     """An element with its attributes, its own text, its children, and where it is."""
 
-    __slots__ = ("tag", "attributes", "text", "children", "file", "line")
+    __slots__ = ("tag", "attributes", "text", "children", "parent", "file", "line")
 
-    def __init__(self, tag, attributes, file, line):
+    def __init__(self, tag, attributes, parent, file, line):
         self.tag, self.attributes, self.text, self.children = tag, attributes, "", []
-        self.file, self.line = file, line
+        self.parent, self.file, self.line = parent, file, line
 
     @property
     def where(self):
-        return f"{self.file}:{self.line}"
+        """The place in an error: file, line and path, such as model.sdf:7: /sdf/model[boat]/link[base]/pose."""
+        path, element = "", self
+        while element is not None:
+            name = element.get("name")
+            path, element = f"/{element.tag}[{name}]{path}" if name else f"/{element.tag}{path}", element.parent
+        return f"{self.file}:{self.line}: {path}"
 
     @property
     def source(self):
@@ -64,8 +70,9 @@ class Element:
             values = [float(word) for word in words]
         except ValueError:
             values = None
-        if values is None or not all(map(math.isfinite, values)):
-            fail(self.where, f"{what} is '{_short(' '.join(words))}'", "finite numbers separated by spaces",
+        if values is None or not all(abs(value) <= _MAX_NUMBER for value in values):
+            fail(self.where, f"{what} is '{_short(' '.join(words))}'",
+                 f"finite numbers up to {_MAX_NUMBER:g} separated by spaces",
                  "a template that was not expanded, or a misspelt number", "Write the numbers out")
         allowed = (count,) if isinstance(count, int) else count
         if allowed and len(values) not in allowed:
@@ -99,18 +106,20 @@ class XmlReader:
     def __init__(self):
         self.bytes = self.elements = 0
 
-    def read(self, path):
+    def read(self, path, element=None):
+        """The root element of a file, which `element` of another one names."""
         path = Path(path)
+        where = f"{element.where}: {path}" if element else path
         try:
             if path.is_fifo() or path.is_socket():
-                raise ImportFailure(f"{path}: cannot be read: not a regular file")
+                raise ImportFailure(f"{where}: cannot be read: not a regular file")
             with open(path, "rb") as file:
                 data = file.read(MAX_BYTES - self.bytes + 1)
         except OSError as error:
-            raise ImportFailure(f"{path}: cannot be read: {error.strerror}") from None
+            raise ImportFailure(f"{where}: cannot be read: {error.strerror}") from None
         self.bytes += len(data)
         if self.bytes > MAX_BYTES:
-            fail(path, f"more than {MAX_BYTES // 2 ** 20} MiB of XML", "a model of at most this size",
+            fail(where, f"more than {MAX_BYTES // 2 ** 20} MiB of XML", "a model of at most this size",
                  "data in the model, or files that include each other", "Keep data in files of their own")
         return self._parse(data, path)
 
@@ -129,8 +138,9 @@ class XmlReader:
                 fail(f"{path}:{parser.CurrentLineNumber}", "too many elements",
                      f"at most {MAX_ELEMENTS:,}, nested at most {MAX_DEPTH} deep",
                      "a file that was made to exhaust " "memory", "Use a smaller model")
-            element = Element(tag, attributes, str(path), parser.CurrentLineNumber)
-            (stack[-1][0].children if stack else root).append(element)
+            parent = stack[-1][0] if stack else None
+            element = Element(tag, attributes, parent, str(path), parser.CurrentLineNumber)
+            (parent.children if parent else root).append(element)
             stack.append((element, []))
 
         def end(tag):
