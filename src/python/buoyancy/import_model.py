@@ -15,11 +15,14 @@ import sys
 import warnings
 from pathlib import Path
 
+import numpy as np
+
 from . import _core
 from .importing import bodies, frames, geometry, hydrodynamics, mass, scene_toml, sdf
 from .importing.failure import ImportFailure, Report, fail
 from .importing.file_search import FileSearch
 from .importing.mjcf import MjcfReader
+from .importing.model import DEFAULT_DENSITY
 from .importing.urdf import read_urdf
 from .importing.xml_file import XmlReader
 
@@ -27,6 +30,11 @@ _VOLUME_DIFFERENCE = 1e-3  # share of the volume from which a declared one is a 
 _CENTER_DIFFERENCE = 1e-4  # m
 _OVERLAP = 1e-3  # share of the smaller part
 _MAX_PAIRS = 200  # of parts whose overlap is computed
+_LOADS = (  # tables and keys of the scene, the matrix of each, and its name in a report
+    ("body.drag", "linear", "linear", "linear drag"),
+    ("body.drag", "quadratic", "quadratic", "quadratic drag"),
+    ("body.added_mass", "matrix", "added_mass", "added mass"),
+)
 
 
 class _HelpFormatter(argparse.HelpFormatter):
@@ -48,50 +56,28 @@ def arguments(argv, version):
         "changed and what was left out.",
         formatter_class=_HelpFormatter,
     )
-    options = parser.add_argument_group("Options")
-    options.add_argument("-h", "--help", action="help", help="Print this help message and exit")
-    options.add_argument(
-        "--version",
-        action="version",
-        version=f"buoyancy-import {version}",
-        help="Display program version information and exit",
-    )
-    parser.add_argument_group("Positionals").add_argument(
-        "model", metavar="MODEL", help="SDF, URDF or MJCF file, or the folder of an SDF model"
-    )
-    options.add_argument("-o", "--output", metavar="SCENE", help="Scene file to write; default: standard output")
-    options.add_argument("--model", dest="name", metavar="NAME", help="Model of a world file, or body of an MJCF file")
-    options.add_argument("--visual", action="store_true", help="Take the visual geometry, not the collision geometry")
-    options.add_argument("--links", action="store_true", help="Make each link a body, also where joints are fixed")
-    options.add_argument(
-        "--drop", action="append", default=[], metavar="LINK", help="Leave out a link; may be repeated"
-    )
-    options.add_argument(
-        "--keep",
-        action="append",
-        default=[],
-        metavar="LINK",
-        help="Keep a link that is taken for a propeller or a sensor; may be repeated",
-    )
-    options.add_argument(
-        "--path",
-        action="append",
-        default=[],
-        metavar="DIR",
-        help="Search models, packages and meshes here too; may be repeated",
-    )
-    options.add_argument(
-        "--close-holes",
-        type=float,
-        metavar="SHARE",
-        help="Close holes of all meshes if hemispheres over them hold at most this share of the volume",
-    )
+    add, names = parser.add_argument_group("Options").add_argument, {"action": "append", "default": []}
+    add("-h", "--help", action="help", help="Print this help message and exit")
+    version_help = "Display program version information and exit"
+    add("--version", action="version", version=f"buoyancy-import {version}", help=version_help)
+    positional = "SDF, URDF or MJCF file, or the folder of an SDF model"
+    parser.add_argument_group("Positionals").add_argument("model", metavar="MODEL", help=positional)
+    add("-o", "--output", metavar="SCENE", help="Scene file to write; default: standard output")
+    add("--model", dest="name", metavar="NAME", help="Model of a world file, or body of an MJCF file")
+    add("--visual", action="store_true", help="Take the visual geometry, not the collision geometry")
+    add("--links", action="store_true", help="Make each link a body, also where joints are fixed")
+    add("--drop", **names, metavar="LINK", help="Leave out a link; may be repeated")
+    keep = "Keep a link that is taken for a propeller or a sensor; may be repeated"
+    add("--keep", **names, metavar="LINK", help=keep)
+    add("--path", **names, metavar="DIR", help="Search models, packages and meshes here too; may be repeated")
+    holes = "Close holes of all meshes if hemispheres over them hold at most this share of the volume"
+    add("--close-holes", type=float, metavar="SHARE", help=holes)
     return parser.parse_args(argv)
 
 
-def read_model(path, options, report):
+def read_model(options, report):
     """The model, and the search for its files."""
-    path = Path(path)
+    path = Path(options.model)
     if ".xacro" in path.suffixes:
         fail(path, "is a xacro file", "an expanded URDF", "a description with macros",
              f"Expand it: xacro {path.name} > {path.name.split('.')[0]}.urdf, with its arguments as name:=value")
@@ -100,8 +86,9 @@ def read_model(path, options, report):
     reader = XmlReader()
     root = reader.read(path)
     search = FileSearch(path, options.path)
-    if any(element.tag.startswith("xacro:") for element in root.walk()):
-        fail(path, "has elements of xacro", "an expanded URDF", "a description with macros",
+    macro = next((element for element in root.walk() if element.tag.startswith("xacro:")), None)
+    if macro is not None:
+        fail(macro.where, "has elements of xacro", "an expanded URDF", "a description with macros",
              f"Expand it: xacro {path.name} > expanded.urdf")
     if root.tag == "robot":
         return read_urdf(root, report), search
@@ -116,35 +103,37 @@ def read_model(path, options, report):
 class Importer:
     def __init__(self, options):
         self.options, self.report = options, Report()
-        self.model, search = read_model(options.model, options, self.report)
-        self.model.check_joints(self.report)
+        self.folder = Path(options.output).resolve().parent if options.output else Path.cwd()
+        self.model, search = read_model(options, self.report)
         self.parts = geometry.PartMaker(search, self.report, options.close_holes)
         self.water = hydrodynamics.Hydrodynamics(self.model, self.report)
         self.text = scene_toml.SceneText()
         self.files = {}  # of meshes to write: name, contents
-        self.bodies = []
+        self.bodies = []  # the names of the links of each
 
     def write(self):
         """Writes the scene and its meshes, with the warnings of whoever opens it."""
         self._write_scene()
-        output = self.options.output
-        folder = Path(output).resolve().parent if output else Path.cwd()
         for name, contents in self.files.items():
-            (folder / name).parent.mkdir(exist_ok=True)
-            (folder / name).write_text(contents, encoding="utf-8")
+            (self.folder / name).parent.mkdir(exist_ok=True)
+            (self.folder / name).write_text(contents, encoding="utf-8")
         with warnings.catch_warnings(record=True) as found:
             warnings.simplefilter("always")
             try:
-                _core.Scene.from_text(str(self.text), folder)
+                _core.Scene.from_text(str(self.text), self.folder)
             except _core.Error as error:
                 raise ImportFailure(
                     f"{self.model.element.where}: the scene that it becomes is refused: {error}{self._origin_of(error)}"
                 ) from None
         for warning in found:
             self.report.warn(str(warning.message).replace("Scene.from_text(): ", "", 1))
-        self._write_report()
-        if output:
-            Path(output).write_text(str(self.text), encoding="utf-8")
+        self.text.comment("")
+        for title, sentences in (("Warnings", self.report.warnings), ("Not converted", self.report.not_converted)):
+            self.text.comment(f"{title}:" if sentences else f"{title}: nothing")
+            for sentence in sentences:
+                self.text.comment(f"- {sentence}")
+        if self.options.output:
+            Path(self.options.output).write_text(str(self.text), encoding="utf-8")
         else:
             print(self.text, end="")
 
@@ -156,39 +145,25 @@ class Importer:
         return f" The value is from: {comments[-1]}" if comments else ""
 
     def _write_scene(self):
-        text, model = self.text, self.model
-        text.comment(f"{model.name}: from {Path(self.options.model).name} ({model.format}) by buoyancy-import.")
+        model = self.model
+        self.text.comment(f"{model.name}: from {Path(self.options.model).name} ({model.format}) by buoyancy-import.")
         self._write_world()
         for number, group in enumerate(bodies.group_links(model, self.options, self.report), 1):
             self._write_body(number, group)
         imported = {link for body in self.bodies for link in body}
         for coefficients in self.water.coefficients:
             if coefficients.link not in imported:
-                self.report.leave_out(
-                    f"coefficients of the link '{coefficients.link}', which is no body ({coefficients.source})"
-                )
-
-    def _write_report(self):
-        text = self.text
-        text.comment("")
-        for title, sentences in (("Warnings", self.report.warnings), ("Not converted", self.report.not_converted)):
-            text.comment(f"{title}:" if sentences else f"{title}: nothing")
-            for sentence in sentences:
-                text.comment(f"- {sentence}")
+                self.report.leave_out(f"coefficients of the link '{coefficients.link}', which is no body", coefficients)
 
     def _write_world(self):
-        text, model, water = self.text, self.model, self.water.water
-        if model.gravity is not None and any(model.gravity):
-            length = math.sqrt(sum(c * c for c in model.gravity))
+        text, water, gravity, source = self.text, self.water.water, self.model.gravity, self.model.gravity_source
+        if gravity is not None and any(gravity):
+            length = math.sqrt(sum(c * c for c in gravity))
             text.table("world")
-            text.key("gravity", length, f"m/s^2, {model.gravity_source}")
-            text.key(
-                "up",
-                scene_toml.vector([-c / length for c in model.gravity]),
-                f"against gravity, {model.gravity_source}",
-            )
-        elif model.gravity is not None:
-            self.report.leave_out(f"gravity 0 ({model.gravity_source}): the scene has its default")
+            text.key("gravity", length, f"m/s^2, {source}")
+            text.key("up", scene_toml.vector([-c / length for c in gravity]), f"against gravity, {source}")
+        elif gravity is not None:
+            self.report.leave_out(f"gravity 0 ({source}): the scene has its default")
         text.table("water")
         value, source = water.get("density", (1025.0, "not stated by the model: sea water"))
         text.key("density", value, f"kg/m^3, {source}")
@@ -208,29 +183,29 @@ class Importer:
     def _write_body(self, number, group):
         text, model, root = self.text, self.model, group.root
         inverse = frames.inverse(root.pose)
-        poses = {link.name: frames.compose(inverse, link.pose) for link in group.links}
-        self.bodies.append([link.name for link in group.links])
+        poses = {link.name: inverse @ link.pose for link in group.links}
+        self.bodies.append(list(poses))
         name = model.name if root.name == model.canonical else f"{model.name} {root.name}"
-        parts = []
-        for link, shape in bodies.geometry_of(group, self.options):
-            parts.append((link, self.parts.part(shape, frames.compose(poses[link.name], shape.pose))))
+        parts = [
+            (link, self.parts.part(shape, poses[link.name] @ shape.pose))
+            for link, shape in bodies.geometry_of(group, self.options)
+        ]
         loads = [c for c in self.water.coefficients if c.link in poses]
 
         text.table("[[body]]")
         text.key("id", number, "numbered in the order of the model")
         text.key("name", name, f"its frame is that of the link '{root.name}', {root.source}")
         if len(group.links) > 1:
-            text.comment("one body of the links " + ", ".join(link.name for link in group.links))
+            text.comment("one body of the links " + ", ".join(poses))
         if loads:
             text.key("outputs", ["wrench", "loads"], "it has coefficients")
         for index, (link, part) in enumerate(parts):
             self._write_part(number, index, link, part)
-        self._check_overlaps(parts, name)
+        self._check_overlaps([part for _, part in parts], name)
         self._check_declared(parts, poses, name)
         if loads:
             self._write_loads(loads, poses)
-        links = [link for link in group.links if link.inertial or link.mass_from_geometry]
-        self._write_client(self._mass(group, poses), root, links, name)
+        self._write_client(group, poses, name)
 
     def _write_part(self, number, index, link, part):
         text, shape = self.text, part.geometry
@@ -245,100 +220,78 @@ class Importer:
             text.key("mesh", entry, part.note or f"{shape.uri}, {shape.source}")
             if part.close_holes is not None:
                 text.key("close_holes", part.close_holes, "without it the mesh is not closed")
-        if any(part.pose[0]):
-            text.key("position", scene_toml.vector(part.pose[0]), f"m, in the frame of the body, {shape.source}")
-        q = scene_toml.quaternion(part.pose[1])
-        if abs(q[0]) != 1:
-            text.key("orientation", q, f"w, x, y, z, {shape.source}")
+        if part.pose[:3, 3].any():
+            position = scene_toml.vector(part.pose[:3, 3])
+            text.key("position", position, f"m, in the frame of the body, {shape.source}")
+        orientation = scene_toml.vector(frames.quaternion(part.pose[:3, :3]))
+        if orientation[0] != 1:
+            text.key("orientation", orientation, f"w, x, y, z, {shape.source}")
 
     def _mesh_file(self, number, index, part):
-        output = self.options.output
-        folder = Path(output).resolve().parent if output else Path.cwd()
         if not part.contents:
-            return os.path.relpath(part.file.resolve(), folder)
-        if not output:
-            raise ImportFailure(
-                f"{part.geometry.element.where}: {part.geometry.kind} '{part.geometry.name}' becomes a mesh "
-                "file beside the scene; expected the name of a scene file. Name it with -o SCENE.toml."
-            )
-        name = f"{Path(output).stem}.d/body{number}_part{index}{part.suffix}"
+            return os.path.relpath(part.file.resolve(), self.folder)
+        if not self.options.output:
+            fail(part.geometry.element.where,
+                 f"{part.geometry.kind} '{part.geometry.name}' becomes a mesh file beside the scene",
+                 "the name of a scene file", "the scene on standard output", "Name it with -o SCENE.toml")
+        name = f"{Path(self.options.output).stem}.d/body{number}_part{index}{part.suffix}"
         self.files[name] = part.contents
         return name
 
-    def _mass(self, group, poses):
+    def _masses(self, link, pose):
+        """The masses of a link: that of its inertial, or those of its geometry."""
+        if not link.mass_from_geometry:
+            return [mass.of_link(link, pose, self.report)] if link.inertial else []
         masses = []
-        for link in group.links:
-            if link.mass_from_geometry:
-                for shape in link.geometry:
-                    if shape.visual and self.model.format == "SDF":
-                        continue
-                    solid = self.parts.part(shape, frames.IDENTITY).solid
-                    density = shape.mass / solid.volume if shape.mass is not None else shape.density
-                    density = 1000.0 if density is None else density
-                    masses.append(mass.of_solid(solid, density, frames.compose(poses[link.name], shape.pose)))
-            elif link.inertial:
-                masses.append(mass.of_link(link, poses[link.name], self.report))
-        return mass.total(masses)
+        for shape in link.geometry:
+            if not shape.visual or self.model.format != "SDF":
+                solid = self.parts.part(shape, frames.IDENTITY).solid
+                density = DEFAULT_DENSITY if shape.density is None else shape.density
+                density = density if shape.mass is None else shape.mass / solid.volume
+                masses.append(mass.of_solid(solid, density, pose @ shape.pose))
+        return masses
 
-    def _write_client(self, total, root, links, name):
-        text = self.text
+    def _write_client(self, group, poses, name):
+        text, model = self.text, self.model
+        total = mass.total([m for link in group.links for m in self._masses(link, poses[link.name])])
         text.table("body.client")
         if total is None:
             self.report.warn(f"body '{name}' has no mass: buoyancy-client takes half the density of the water")
         else:
-            source = " + ".join(f"{link.inertial.source if link.inertial else link.source}" for link in links[:4])
-            source += f" and {len(links) - 4} more" if len(links) > 4 else ""
-            text.key("mass", total.mass, f"kg, {source}")
+            heavy = [link for link in group.links if link.inertial or link.mass_from_geometry]
+            sources = [(link.inertial or link).source for link in heavy]
+            more = f" and {len(sources) - 4} more" if len(sources) > 4 else ""
+            text.key("mass", total.mass, f"kg, {' + '.join(sources[:4])}{more}")
             text.key("center_of_mass", scene_toml.vector(total.center), "m, in the frame of the body")
-            i = total.inertia
-            entries = scene_toml.vector([i[0][0], i[1][1], i[2][2], i[0][1], i[0][2], i[1][2]])
+            rows, columns = (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)
+            entries = scene_toml.vector(total.inertia[rows, columns])
             if total.possible:
-                text.key(
-                    "inertia",
-                    entries if any(entries[3:]) else entries[:3],
-                    "kg m^2, about the centre of mass, in the axes of the body",
-                )
+                entries = entries if any(entries[3:]) else entries[:3]
+                text.key("inertia", entries, "kg m^2, about the centre of mass, in the axes of the body")
             else:
-                self.report.leave_out(
-                    f"inertia [{', '.join(f'{e:.6g}' for e in entries)}] of '{name}': the scene has that of its volume"
-                )
-        pose = frames.compose(self.model.pose, root.pose)
-        text.key("position", scene_toml.vector(pose[0]), f"m, {self.model.element.source}")
-        text.key("orientation", scene_toml.quaternion(pose[1]), f"w, x, y, z, {self.model.element.source}")
+                found = ", ".join(f"{entry:.6g}" for entry in entries)
+                self.report.leave_out(f"inertia [{found}] of '{name}': the scene has that of its volume")
+        pose = model.pose @ group.root.pose
+        text.key("position", scene_toml.vector(pose[:3, 3]), f"m, {model.source}")
+        orientation = scene_toml.vector(frames.quaternion(pose[:3, :3]))
+        text.key("orientation", orientation, f"w, x, y, z, {model.source}")
 
     def _write_loads(self, loads, poses):
-        center, sums = None, [frames.zeros() for _ in range(3)]
+        center, sums = poses[loads[0].link][:3, 3], {matrix: np.zeros((6, 6)) for matrix in hydrodynamics.MATRICES}
         for coefficients in loads:
-            matrices, origin, rotation = hydrodynamics.with_body_frame(coefficients, poses[coefficients.link])
-            center = origin if center is None else center
-            offset = frames.subtract(origin, center)
-            if any(any(row) for row in matrices[1]):
-                if not frames.is_right_angled(rotation):
-                    self.report.warn(
-                        f"the quadratic drag of '{coefficients.link}' is turned with its link: exact only "
-                        f"for right angles ({coefficients.source})"
-                    )
-                if any(offset):
-                    self.report.warn(
-                        f"the quadratic drag of '{coefficients.link}' is moved to another centre as a matrix, "
-                        f"which is an approximation ({coefficients.source})"
-                    )
-            for total, matrix in zip(sums, matrices):
-                moved = frames.moved_6(matrix, offset)
-                for i, j in itertools.product(range(6), repeat=2):
-                    total[i][j] += moved[i][j]
+            pose = poses[coefficients.link]
+            offset, rotation = pose[:3, 3] - center, pose[:3, :3] @ coefficients.rotation
+            if coefficients.matrices["quadratic"].any() and offset.any():
+                self.report.warn(f"the quadratic drag of '{coefficients.link}' is moved to another centre as a matrix, "
+                                 "which is an approximation", coefficients)
+            for name, matrix in coefficients.matrices.items():
+                sums[name] += frames.moved_6(frames.turned_6(matrix, rotation), offset)
         changed = "; ".join(dict.fromkeys(c.changed for c in loads))
         keys = []
-        for table, key, name, what, total in zip(
-            ("body.drag", "body.drag", "body.added_mass"),
-            ("linear", "quadratic", "matrix"),
-            ("linear", "quadratic", "added_mass"),
-            ("linear drag", "quadratic drag", "added mass"),
-            sums,
-        ):
-            source = ", ".join(dict.fromkeys(c.source_of(name) for c in loads if any(map(any, getattr(c, name)))))
-            matrix = hydrodynamics.admissible(total, what, source, self.report, key == "matrix")
-            if any(map(any, matrix)):
+        for table, key, name, what in _LOADS:
+            source = ", ".join(dict.fromkeys(c.source_of(name) for c in loads if c.matrices[name].any()))
+            matrix = hydrodynamics.admissible(sums[name], what, source, self.report, name == "added_mass")
+            if matrix.any():
                 keys.append((table, key, matrix, f"{changed}; {source}"))
         immersion = "none" if any(c.immersion == "none" for c in loads) else "volume"
         if immersion != "none":
@@ -355,57 +308,42 @@ class Importer:
 
     def _check_overlaps(self, parts, name):
         found, unknown = [], False
-        for a, b in itertools.islice(itertools.combinations([part for _, part in parts], 2), _MAX_PAIRS):
-            volume = geometry.overlap(a, b)
+        for a, b in itertools.islice(itertools.combinations(parts, 2), _MAX_PAIRS):
+            volume, smaller = geometry.overlap(a, b), min(a.solid.volume, b.solid.volume)
             unknown = unknown or volume is None
-            smaller = min(a.solid.volume, b.solid.volume)
             if volume is not None and volume > _OVERLAP * smaller:
-                found.append(
-                    (
-                        volume,
-                        f"'{a.geometry.name}' and '{b.geometry.name}' by {volume:.4g} m^3 "
-                        f"({100 * volume / smaller:.3g} % of the smaller)",
-                    )
-                )
+                share = f"({100 * volume / smaller:.3g} % of the smaller)"
+                found.append((volume, f"'{a.geometry.name}' and '{b.geometry.name}' by {volume:.4g} m^3 {share}"))
         if found:
             found.sort(reverse=True)
             more = f", and {len(found) - 5} more pairs" if len(found) > 5 else ""
-            self.report.warn(
-                f"body '{name}': parts overlap: {', '.join(text for _, text in found[:5])}{more}; "
-                f"{sum(volume for volume, _ in found):.4g} m^3 in all. The scene displaces this water twice: "
-                "take it out of the model"
-            )
+            self.report.warn(f"body '{name}': parts overlap: {', '.join(text for _, text in found[:5])}{more}; "
+                             f"{sum(volume for volume, _ in found):.4g} m^3 in all. The scene displaces this water "
+                             "twice: take it out of the model")
         if unknown:
-            self.report.note(
-                f"body '{name}' has several parts with meshes: buoyancyd --check reports whether they overlap"
-            )
+            self.report.note(f"body '{name}' has several parts with meshes: buoyancyd --check reports whether they "
+                             "overlap")
 
     def _check_declared(self, parts, poses, name):
+        """Compares the volumes and centres of buoyancy that plugins declare with those of the geometry."""
         for declared in self.water.declared:
             if declared.link not in poses:
                 continue
             own = [part for link, part in parts if link.name == declared.link] or [part for _, part in parts]
             volume = sum(part.solid.volume for part in own)
             if declared.volume is not None and abs(declared.volume - volume) > _VOLUME_DIFFERENCE * volume:
-                self.report.warn(
-                    f"body '{name}': the model declares a volume of {declared.volume:.6g} m^3, its geometry has "
-                    f"{volume:.6g} m^3 ({100 * (volume / declared.volume - 1):+.3g} "
-                    f"%). The scene uses the geometry: scaling lengths by "
-                    f"{(declared.volume / volume) ** (1 / 3):.5g} would match ({declared.source})"
-                )
+                self.report.warn(f"body '{name}': the model declares a volume of {declared.volume:.6g} m^3, its "
+                                 f"geometry has {volume:.6g} m^3 ({100 * (volume / declared.volume - 1):+.3g} %). The "
+                                 "scene uses the geometry: scaling lengths by "
+                                 f"{(declared.volume / volume) ** (1 / 3):.5g} would match", declared)
             if declared.center is None:
                 continue
-            centroid = tuple(
-                sum(part.solid.volume * frames.transform(part.pose, part.solid.centroid)[i] for part in own) / volume
-                for i in range(3)
-            )
+            centroid = sum(p.solid.volume * frames.transform(p.pose, p.solid.centroid) for p in own) / volume
             center = frames.transform(poses[declared.link], declared.center)
             if math.dist(center, centroid) > _CENTER_DIFFERENCE:
                 values = [", ".join(f"{c:.5g}" for c in scene_toml.vector(p)) for p in (center, centroid)]
-                self.report.warn(
-                    f"body '{name}': the model declares the centre of buoyancy ({values[0]}) m, that of its "
-                    f"geometry is ({values[1]}) m. The scene uses the geometry ({declared.source})"
-                )
+                self.report.warn(f"body '{name}': the model declares the centre of buoyancy ({values[0]}) m, that of "
+                                 f"its geometry is ({values[1]}) m. The scene uses the geometry", declared)
 
 
 def _count(number, one, many):
@@ -413,20 +351,15 @@ def _count(number, one, many):
 
 
 def print_report(importer, target):
-    report = importer.report
-    lines = [
-        f"{importer.model.name}: {importer.model.format}, {_count(len(importer.model.links), 'link', 'links')}, "
-        f"{_count(len(importer.bodies), 'body', 'bodies')}"
-    ]
-    for title, sentences in (("note", report.notes), ("warning", report.warnings)):
-        lines += [f"{title}: {sentence}" for sentence in sentences]
+    report, model, output = importer.report, importer.model, importer.options.output
+    links, count = _count(len(model.links), "link", "links"), _count(len(importer.bodies), "body", "bodies")
+    lines = [f"{model.name}: {model.format}, {links}, {count}"]
+    lines += [f"note: {sentence}" for sentence in report.notes]
+    lines += [f"warning: {sentence}" for sentence in report.warnings]
     lines.append(f"not converted: {len(report.not_converted) or 'nothing'}")
     lines += [f"  - {sentence}" for sentence in report.not_converted]
-    if importer.options.output:
-        lines.append(
-            f"written: {importer.options.output}; see how it floats: buoyancyd --scene {importer.options.output} "
-            "--check"
-        )
+    if output:
+        lines.append(f"written: {output}; see how it floats: buoyancyd --scene {output} --check")
     print("\n".join(lines), file=target)
 
 
@@ -439,7 +372,7 @@ def main(argv=None, version="of the Python package buoyancy"):
     except ImportFailure as failure:
         print(f"buoyancy-import: {' '.join(str(failure).split())}", file=sys.stderr)
         return 2
-    except (ArithmeticError, LookupError, RecursionError, ValueError) as error:
+    except (ArithmeticError, LookupError, RecursionError, TypeError, ValueError) as error:
         print(
             f"buoyancy-import: {options.model}: cannot be imported ({type(error).__name__}: {error}); expected a valid "
             "model. Likely cause: an element with a value of another kind. Check the model with the tool of its format "

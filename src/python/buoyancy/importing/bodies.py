@@ -6,7 +6,7 @@ joint. A body on a moving joint is left out if it has no volume, or is a propell
 import re
 from dataclasses import dataclass
 
-from .failure import fail
+from .failure import fail, one_of
 from .geometry import solid_of
 
 _PROPELLER = re.compile(r"prop(?!erty)|thruster|rotor(?!y)|screw|impeller", re.IGNORECASE)
@@ -15,6 +15,7 @@ _SENSOR = re.compile(
 )
 _MIN_VOLUME = 1e-9  # m^3: what is smaller stands for a link whose shape does not matter
 _THRUSTER_PLUGIN = re.compile(r"thrust", re.IGNORECASE)
+_DRIVEN = ("joint_name", "jointName", "link_name", "linkName")
 
 
 @dataclass
@@ -27,7 +28,7 @@ def group_links(model, options, report):
     """The bodies of a model, in the order of their links."""
     for name in [*options.drop, *options.keep]:
         if name not in model.links:
-            fail(model.element.where, f"no link is named '{name}'", f"one of: {', '.join(model.links)}",
+            fail(model.element.where, f"no link is named '{name}'", one_of(model.links),
                  "a misspelt name of --drop or --keep", "Correct the option")
     kept = {name: link for name, link in model.links.items() if name not in options.drop}
     for name in options.drop:
@@ -64,8 +65,7 @@ def _without_accessories(model, groups, options, report):
     driven = set()
     for plugin in model.plugins:
         if _THRUSTER_PLUGIN.search(plugin.name + plugin.filename):
-            for key in ("joint_name", "jointName", "link_name", "linkName"):
-                driven.add(plugin.prefix + plugin.element.child_text(key, ""))
+            driven.update(plugin.prefix + plugin.element.text_of(key) for key in _DRIVEN)
     main = next((group for group in groups if any(link.name == model.canonical for link in group.links)), None)
     result, lost = [], 0.0
     for group in groups:
@@ -91,17 +91,12 @@ def _without_accessories(model, groups, options, report):
     if lost > 0:
         report.warn(f"the links that are left out have {lost:.6g} kg, which no body of the scene has")
     if not result:
-        kinds = ("visual", "collision") if options.visual else ("collision", "visual")
-        other = any(g.visual != options.visual for group in groups for link in group.links for g in link.geometry)
-        fail(
-            model.element.where,
-            f"no body has a volume in its {kinds[0]} geometry",
-            "boxes, cylinders or meshes",
-            "a model for another purpose",
-            f"Import the {kinds[1]} geometry " + ("without --visual" if options.visual else "with --visual")
-            if other
-            else "Add geometry to its links",
-        )
+        kind, other = ("visual", "collision") if options.visual else ("collision", "visual")
+        option = "without --visual" if options.visual else "with --visual"
+        has_other = any(g.visual != options.visual for group in groups for link in group.links for g in link.geometry)
+        fail(model.element.where, f"no body has a volume in its {kind} geometry", "boxes, cylinders or meshes",
+             "a model for another purpose",
+             f"Import the {other} geometry {option}" if has_other else "Add geometry to its links")
     return result
 
 

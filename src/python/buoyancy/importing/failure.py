@@ -10,21 +10,25 @@ def fail(where, actual, expected, cause, hint):
     raise ImportFailure(" ".join(text.split()))
 
 
+def one_of(names):
+    return f"one of: {', '.join(names) or 'none'}"
+
+
 class Report:
-    """Three sets of sentences, in the order in which they are said first."""
+    """Three sets of sentences, in the order in which they are said first; each may name the source of an element."""
 
     def __init__(self):
         self.notes, self.warnings, self.not_converted = {}, {}, {}
 
-    def note(self, text):
-        _append(self.notes, text)
+    def note(self, text, element=None):
+        _add(self.notes, text, element)
 
-    def warn(self, text):
-        _append(self.warnings, text)
+    def warn(self, text, element=None):
+        _add(self.warnings, text, element)
 
-    def leave_out(self, text):
-        _append(self.not_converted, text)
+    def leave_out(self, text, element=None):
+        _add(self.not_converted, text, element)
 
 
-def _append(sentences, text):
-    sentences[" ".join(text.split())] = None
+def _add(sentences, text, element):
+    sentences[" ".join(text.split()) + (f" ({element.source})" if element else "")] = None

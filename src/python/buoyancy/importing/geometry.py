@@ -11,9 +11,11 @@ from pathlib import Path
 from typing import Optional
 from xml.sax.saxutils import escape, quoteattr
 
+import numpy as np
+
 from .. import _core
 from . import frames
-from .failure import ImportFailure, fail
+from .failure import ImportFailure, fail, one_of
 from .xml_file import XmlReader
 
 SIDES, BANDS = 128, 64
@@ -28,10 +30,9 @@ class Solid:
     """Volume [m^3], centroid [m] and, for a density of 1, inertia about the centroid [m^5], in the geometry's frame."""
 
     volume: float
-    centroid: tuple
-    inertia: list
-    low: tuple  # corners of its box
-    high: tuple
+    centroid: np.ndarray
+    inertia: np.ndarray
+    box: np.ndarray  # its two corners
 
 
 def solid_of(geometry):
@@ -40,15 +41,12 @@ def solid_of(geometry):
     if len(size) != count or any(not 0 < c < _MAX_LENGTH for c in size):
         fail(geometry.element.where, f"{geometry.kind} '{geometry.name}' has the size {list(size)}",
              f"{count} lengths above 0, in m", "a size that is missing or in another unit", "Correct the model")
-    kind, centroid = geometry.kind, (0.0, 0.0, 0.0)
-    if kind == "box":
-        volume, half = math.prod(size), tuple(c / 2 for c in size)
-        x, y, z = (volume * c * c / 12 for c in size)
-        moments = (y + z, x + z, x + y)
-    elif kind in ("sphere", "ellipsoid"):
-        half = size if kind == "ellipsoid" else size * 3
-        volume = 4 / 3 * math.pi * math.prod(half)
-        x, y, z = (volume * c * c / 5 for c in half)
+    kind, centroid = geometry.kind, np.zeros(3)
+    if kind in ("box", "sphere", "ellipsoid"):
+        half = size * 3 if kind == "sphere" else tuple(c / 2 for c in size) if kind == "box" else size
+        factor, share = (8, 3) if kind == "box" else (4 / 3 * math.pi, 5)
+        volume = factor * math.prod(half)
+        x, y, z = (volume * c * c / share for c in half)
         moments = (y + z, x + z, x + y)
     else:
         radius, length = size
@@ -56,7 +54,7 @@ def solid_of(geometry):
         volume = math.pi * radius**2 * length
         axial, across = volume * radius**2 / 2, volume * (3 * radius**2 + length**2) / 12
         if kind == "cone":
-            volume, centroid = volume / 3, (0.0, 0.0, -length / 4)
+            volume, centroid = volume / 3, np.array((0.0, 0.0, -length / 4))
             axial, across = 0.3 * volume * radius**2, volume * (0.15 * radius**2 + 0.0375 * length**2)
         elif kind == "capsule":
             caps = 4 / 3 * math.pi * radius**3
@@ -64,44 +62,36 @@ def solid_of(geometry):
             across += caps * (0.4 * radius**2 + length**2 / 4 + 0.375 * length * radius)
             volume, half = volume + caps, (radius, radius, length / 2 + radius)
         moments = (across, across, axial)
-    inertia = [[moments[i] if i == j else 0.0 for j in range(3)] for i in range(3)]
-    return Solid(volume, centroid, inertia, tuple(-c for c in half), half)
+    return Solid(volume, centroid, np.diag(moments), np.array((-np.array(half), half)))
 
 
 def _surface_of_revolution(rings):
-    """OBJ text of a surface: rings of SIDES points (radii along x and y, height), closed by a point at both ends."""
-    lines, top, bottom = [], rings[0][2], rings[-1][2]
-    for rx, ry, z in rings[1:-1]:
-        for i in range(SIDES):
-            angle = 2 * math.pi * i / SIDES
-            lines.append(f"v {rx * math.cos(angle)!r} {ry * math.sin(angle)!r} {z!r}")
-    lines += [f"v 0 0 {top!r}", f"v 0 0 {bottom!r}"]
-    count = len(rings) - 2
+    """Vertices and faces of a surface: rings of SIDES points (radii along x and y, height), closed by two points."""
+    around = [2 * math.pi * i / SIDES for i in range(SIDES)]
+    vertices = [(rx * math.cos(a), ry * math.sin(a), z) for rx, ry, z in rings[1:-1] for a in around]
+    top, last, faces = len(vertices), len(vertices) - SIDES, []
+    vertices += [(0, 0, rings[0][2]), (0, 0, rings[-1][2])]
     for i in range(SIDES):
         after = (i + 1) % SIDES
-        lines.append(f"f {count * SIDES + 1} {i + 1} {after + 1}")
-        for ring in range(count - 1):
-            a, b = ring * SIDES + i + 1, ring * SIDES + after + 1
-            lines += [f"f {a} {a + SIDES} {b + SIDES}", f"f {a} {b + SIDES} {b}"]
-        last = (count - 1) * SIDES
-        lines.append(f"f {count * SIDES + 2} {last + after + 1} {last + i + 1}")
-    return "\n".join(lines) + "\n"
+        faces.append((top, i, after))
+        for ring in range(0, last, SIDES):
+            a, b = ring + i, ring + after
+            faces += [(a, a + SIDES, b + SIDES), (a, b + SIDES, b)]
+        faces.append((top + 1, last + after, last + i))
+    return vertices, faces
 
 
 def _mesh_of_shape(geometry):
     size = geometry.size
+    angles = [math.pi * i / BANDS for i in range(BANDS + 1)]
     if geometry.kind == "ellipsoid":
-        angles = [math.pi * i / BANDS for i in range(BANDS + 1)]
         return _surface_of_revolution(
             [(size[0] * math.sin(a), size[1] * math.sin(a), size[2] * math.cos(a)) for a in angles]
         )
     radius, length = size
-    rings = []
-    for sign in (1, -1):
-        cap = [math.pi * i / BANDS for i in range(BANDS // 2 + 1)]
-        ring = [(radius * math.sin(a),) * 2 + (sign * (length / 2 + radius * math.cos(a)),) for a in cap]
-        rings += ring if sign > 0 else ring[::-1]
-    return _surface_of_revolution(rings)
+    cap = [(radius * math.sin(a), radius * math.sin(a), length / 2 + radius * math.cos(a)) for a in angles]
+    upper = cap[: BANDS // 2 + 1]
+    return _surface_of_revolution(upper + [(rx, ry, -z) for rx, ry, z in reversed(upper)])
 
 
 @dataclass
@@ -109,7 +99,7 @@ class Part:
     """A geometry of a body: what the scene file says of it, and its pose in the body's frame."""
 
     geometry: object
-    pose: tuple
+    pose: np.ndarray
     shape: Optional[dict] = None  # of a shape
     file: Optional[Path] = None  # of a mesh
     contents: str = ""  # of a mesh that is written beside the scene
@@ -128,49 +118,40 @@ class PartMaker:
         self._meshes = {}
 
     def part(self, geometry, pose):
-        part = Part(geometry, pose)
-        size = geometry.size
-        if geometry.kind == "mesh":
+        part, kind, size = Part(geometry, pose), geometry.kind, geometry.size
+        if kind == "mesh":
             self._read_mesh(part)
             return part
         part.solid = solid_of(geometry)
-        if geometry.kind == "box":
+        if kind == "box":
             part.shape = {"type": "box", "size": list(size)}
-        elif geometry.kind == "sphere":
-            part.shape = {"type": "sphere", "radius": size[0], "segments": SPHERE_SEGMENTS}
-        elif geometry.kind in ("cylinder", "cone"):
-            part.shape = {"type": geometry.kind, "radius": size[0], "height": size[1], "segments": SIDES}
-            if geometry.kind == "cone":  # whose base is at z = 0 in a scene
-                part.pose = frames.compose(pose, ((0.0, 0.0, -size[1] / 2), frames.IDENTITY[1]))
-                part.note = "moved by half its height: a cone of a scene has its base at z = 0"
+            return part
+        if kind in ("capsule", "ellipsoid"):
+            vertices, faces = _mesh_of_shape(geometry)
+            lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices]
+            lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]
+            part.contents, part.suffix = "\n".join(lines) + "\n", ".obj"
+            part.note = f"{kind} {list(size)} as a mesh of {SIDES} meridians and {BANDS} bands"
+            volume = _core.Mesh(vertices, faces).volume
         else:
-            part.contents, part.suffix = _mesh_of_shape(geometry), ".obj"
-            part.note = f"{geometry.kind} {list(size)} as a mesh of {SIDES} meridians and {BANDS} bands"
-        if geometry.kind in ("capsule", "ellipsoid"):
-            self._note_volume(part, self._volume_of_text(part.contents))
-        elif geometry.kind != "box":
-            self._note_volume(part, part.solid.volume * _inscribed_share(geometry.kind))
+            height = {} if kind == "sphere" else {"height": size[1]}
+            segments = SPHERE_SEGMENTS if kind == "sphere" else SIDES
+            part.shape = {"type": kind, "radius": size[0], **height, "segments": segments}
+            if kind == "cone":
+                part.pose = pose @ frames.pose((0.0, 0.0, -size[1] / 2))
+                part.note = "moved by half its height: a cone of a scene has its base at z = 0"
+            volume = part.solid.volume * _inscribed_share(kind)
+        lack = 100 * (1 - volume / part.solid.volume)
+        part.note = f"{part.note or kind}; {volume:.6g} m^3, {lack:.2g} % less than a round one"
+        self.report.note(f"{kind}: a polyhedron, with {lack:.1g} % less volume")
         return part
-
-    def _note_volume(self, part, volume):
-        kind, share = part.geometry.kind, 1 - volume / part.solid.volume
-        part.note = f"{part.note or kind}; {volume:.6g} m^3, {100 * share:.2g} % less than a round one"
-        self.report.note(f"{kind}: a polyhedron, with {100 * share:.1g} % less volume")
-
-    @staticmethod
-    def _volume_of_text(text):
-        vertices, faces = [], []
-        for line in text.splitlines():
-            kind, *words = line.split()
-            (vertices if kind == "v" else faces).append([float(w) if kind == "v" else int(w) - 1 for w in words])
-        return _core.Mesh(vertices, faces).volume
 
     def _read_mesh(self, part):
         geometry = part.geometry
         part.file, part.scale = self.search.find(geometry.uri, geometry.element, "mesh file"), geometry.size
         if part.file.is_dir() or any(c == 0 for c in part.scale):
             fail(geometry.element.where,
-                 f"the mesh '{geometry.uri}' is a folder, or its scale {list(part.scale)} has a " "0",
+                 f"the mesh '{geometry.uri}' is a folder, or its scale {list(part.scale)} has a 0",
                  "a mesh file and factors that are not 0", "a uri that was cut off", "Correct the model")
         if geometry.submesh:
             part.contents, part.suffix = _submesh(part.file, geometry), part.file.suffix
@@ -180,8 +161,7 @@ class PartMaker:
             self._meshes[key] = self._load(part)
         part.solid, part.close_holes = self._meshes[key]
         if geometry.center_submesh:
-            middle = tuple(-(a + b) / 2 for a, b in zip(part.solid.low, part.solid.high))
-            part.pose = frames.compose(part.pose, (middle, frames.IDENTITY[1]))
+            part.pose = part.pose @ frames.pose(-part.solid.box.sum(axis=0) / 2)
             part.note += ", its box centred"
 
     def _load(self, part):
@@ -204,19 +184,9 @@ class PartMaker:
                     "link: --drop LINK."
                 ) from None
         if close_holes is not None and close_holes != self.close_holes:
-            self.report.warn(
-                f"mesh '{part.file.name}' is not closed: close_holes = {close_holes} closes its holes; "
-                f"its volume is then {mesh.volume:.6g} m^3"
-            )
-        low, high = mesh.bounding_box
-        solid = Solid(
-            mesh.volume,
-            tuple(map(float, mesh.center_of_mass)),
-            [[float(mesh.inertia[i][j]) for j in range(3)] for i in range(3)],
-            tuple(map(float, low)),
-            tuple(map(float, high)),
-        )
-        return solid, close_holes
+            self.report.warn(f"mesh '{part.file.name}' is not closed: close_holes = {close_holes} closes its holes; "
+                             f"its volume is then {mesh.volume:.6g} m^3")
+        return Solid(mesh.volume, mesh.center_of_mass, mesh.inertia, np.array(mesh.bounding_box)), close_holes
 
 
 def _inscribed_share(kind):
@@ -224,12 +194,10 @@ def _inscribed_share(kind):
     if kind != "sphere":
         return SIDES / (2 * math.pi) * math.sin(2 * math.pi / SIDES)
     # Frusta between n + 2 circles of latitude, each an n-gon.
-    n, volume = SPHERE_SEGMENTS, 0.0
-    angles = [math.pi * i / (n + 1) for i in range(n + 2)]
-    for a, b in zip(angles, angles[1:]):
-        p, q = math.sin(a), math.sin(b)
-        volume += (math.cos(a) - math.cos(b)) * (p * p + p * q + q * q) / 3
-    return volume * n / 2 * math.sin(2 * math.pi / n) / (4 / 3 * math.pi)
+    n = SPHERE_SEGMENTS
+    angles = np.linspace(0, math.pi, n + 2)
+    p, q, heights = np.sin(angles[:-1]), np.sin(angles[1:]), -np.diff(np.cos(angles))
+    return (heights * (p * p + p * q + q * q)).sum() / 3 * n / 2 * math.sin(2 * math.pi / n) / (4 / 3 * math.pi)
 
 
 def _submesh(path, geometry):
@@ -256,8 +224,8 @@ def _submesh(path, geometry):
     else:
         return fail(geometry.element.where, f"<submesh> of '{path.name}'", "a submesh of .obj or .dae",
                     "another format", "Save the submesh as a file of its own")
-    return fail(geometry.element.where, f"'{path.name}' has no submesh '{name}'",
-                f"one of: {', '.join(names) or 'none'}", "a misspelt name", "Correct <submesh>")
+    return fail(geometry.element.where, f"'{path.name}' has no submesh '{name}'", one_of(names), "a misspelt name",
+                "Correct <submesh>")
 
 
 def _keep_instances(element, name, titles, names, chosen):
@@ -286,58 +254,41 @@ def _xml_text(element):
     return f"<{element.tag}{attributes}>{inside}</{element.tag}>"
 
 
-def _contains(part, point):
-    """Whether a shape contains a point in its own frame."""
-    x, y, z = point
-    kind, size = part.geometry.kind, part.geometry.size
+def _contains(geometry, points):
+    """Which of the rows of `points`, in the frame of a shape, the shape contains."""
+    kind, size = geometry.kind, geometry.size
     if kind == "box":
-        return all(2 * abs(c) < s for c, s in zip(point, size))
-    if kind == "sphere":
-        return x * x + y * y + z * z < size[0] ** 2
-    if kind == "ellipsoid":
-        return sum((c / s) ** 2 for c, s in zip(point, size)) < 1
+        return np.all(2 * abs(points) < size, axis=1)
+    if kind in ("sphere", "ellipsoid"):
+        return ((points / size) ** 2).sum(axis=1) < 1
     radius, length = size
+    z, across = points[:, 2], points[:, 0] ** 2 + points[:, 1] ** 2
     beyond = abs(z) - length / 2
     if kind == "capsule":
-        return x * x + y * y + max(beyond, 0.0) ** 2 < radius**2
-    if beyond > 0:
-        return False
+        return across + np.maximum(beyond, 0.0) ** 2 < radius**2
     limit = radius if kind == "cylinder" else radius * (0.5 - z / length)
-    return x * x + y * y < limit**2
+    return (beyond <= 0) & (across < limit**2)
 
 
 def overlap(a, b):
-    """The volume [m^3] that two shapes share, sampled on a grid unless both are boxes along the axes; None for a mesh."""
+    """The volume [m^3] that two shapes share, sampled unless both are boxes along the axes; None for a mesh."""
     if "mesh" in (a.geometry.kind, b.geometry.kind):
         return None
-    boxes = []
-    for part in (a, b):
-        corners = [
-            frames.transform(_shape_pose(part), corner)
-            for corner in itertools.product(*zip(part.solid.low, part.solid.high))
-        ]
-        boxes.append(([min(c[i] for c in corners) for i in range(3)], [max(c[i] for c in corners) for i in range(3)]))
-    low = [max(box[0][i] for box in boxes) for i in range(3)]
-    high = [min(box[1][i] for box in boxes) for i in range(3)]
-    if any(h - l <= 1e-9 for l, h in zip(low, high)):
+    poses, boxes = [_center(part) for part in (a, b)], []
+    for part, pose in zip((a, b), poses):
+        corners = np.array([frames.transform(pose, corner) for corner in itertools.product(*part.solid.box.T)])
+        boxes.append((corners.min(axis=0), corners.max(axis=0)))
+    low, high = np.maximum(boxes[0][0], boxes[1][0]), np.minimum(boxes[0][1], boxes[1][1])
+    if np.any(high - low <= 1e-9):
         return 0.0
-    if all(part.geometry.kind == "box" and frames.is_right_angled(part.pose[1]) for part in (a, b)):
-        return math.prod(h - l for l, h in zip(low, high))
-    axes = [[l + (h - l) * (i + 0.5) / _GRID for i in range(_GRID)] for l, h in zip(low, high)]
-    inverses = [(p[0], frames.matrix(frames.conjugate(p[1]))) for p in map(_shape_pose, (a, b))]
-    inside = 0
-    for point in itertools.product(*axes):
-        for part, (origin, rotation) in zip((a, b), inverses):
-            offset = frames.subtract(point, origin)
-            if not _contains(part, [sum(r * c for r, c in zip(row, offset)) for row in rotation]):
-                break
-        else:
-            inside += 1
-    return inside / _GRID**3 * math.prod(h - l for l, h in zip(low, high))
+    if all(p.geometry.kind == "box" and frames.is_right_angled(p.pose[:3, :3]) for p in (a, b)):
+        return math.prod(high - low)
+    axes = [low[i] + (high[i] - low[i]) * (np.arange(_GRID) + 0.5) / _GRID for i in range(3)]
+    points = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
+    inside = [_contains(p.geometry, (points - pose[:3, 3]) @ pose[:3, :3]) for p, pose in zip((a, b), poses)]
+    return np.mean(inside[0] & inside[1]) * math.prod(high - low)
 
 
-def _shape_pose(part):
+def _center(part):
     """The pose of the shape's centre; a cone in a scene has its origin in its base."""
-    if part.geometry.kind != "cone":
-        return part.pose
-    return frames.compose(part.pose, ((0.0, 0.0, part.geometry.size[1] / 2), frames.IDENTITY[1]))
+    return part.pose @ frames.pose((0.0, 0.0, part.geometry.size[1] / 2)) if part.geometry.kind == "cone" else part.pose

@@ -11,39 +11,30 @@ class Mass:
     """Mass [kg], centre of mass [m] and inertia about it [kg m^2], in one frame."""
 
     mass: float
-    center: tuple
-    inertia: list
+    center: np.ndarray
+    inertia: np.ndarray
     possible: bool = True  # whether each inertia that is summed is one of a rigid body, or of a rod or a point
 
 
 def of_link(link, pose, report):
     """The mass of a link's inertial in the frame of the body; `pose` is that of the link in that frame."""
     inertial, inertia = link.inertial, link.inertial.inertia
-    low, middle, high = principal_moments(inertia)
-    moments = f"the principal moments {low:.4g}, {middle:.4g}, {high:.4g} kg m^2"
-    if inertial.mass == 0.0 and any(map(any, inertia)):
-        report.warn(
-            f"link '{link.name}' has no mass, but {moments}; expected a mass above 0, or no inertia. Its inertia is "
-            f"left out: correct the model ({inertial.source})"
-        )
-        inertia = [[0.0] * 3 for _ in range(3)]
-    elif inertial.mass > 0.0 and not is_possible(inertia):
-        report.warn(
-            f"link '{link.name}': no rigid body has {moments}; expected each above 0 and at most the sum of the "
-            f"others. Likely cause: a mistyped number, or another unit. Correct the model ({inertial.source})"
-        )
-    rotation = frames.product(pose[1], inertial.rotation)
-    return Mass(
-        inertial.mass,
-        frames.transform(pose, inertial.center),
-        frames.turned(inertia, rotation),
-        inertial.mass == 0.0 or (low >= -1e-9 * high and _obeys_triangle(low, middle, high)),
-    )
+    low, middle, high = moments = np.linalg.eigvalsh(inertia)
+    found = f"the principal moments {', '.join(f'{moment:.4g}' for moment in moments)} kg m^2"
+    if inertial.mass == 0.0 and inertia.any():
+        report.warn(f"link '{link.name}' has no mass, but {found}; expected a mass above 0, or no inertia. Its inertia "
+                    "is left out: correct the model", inertial)
+        inertia = np.zeros((3, 3))
+    elif inertial.mass > 0.0 and not _is_possible(moments):
+        report.warn(f"link '{link.name}': no rigid body has {found}; expected each above 0 and at most the sum of the "
+                    "others. Likely cause: a mistyped number, or another unit. Correct the model", inertial)
+    place = pose @ inertial.pose
+    is_flat = low >= -1e-9 * high and _obeys_triangle(low, middle, high)
+    return Mass(inertial.mass, place[:3, 3], _turned(inertia, place), inertial.mass == 0.0 or is_flat)
 
 
 def of_solid(solid, density, pose):
-    inertia = [[density * value for value in row] for row in solid.inertia]
-    return Mass(density * solid.volume, frames.transform(pose, solid.centroid), frames.turned(inertia, pose[1]))
+    return Mass(density * solid.volume, frames.transform(pose, solid.centroid), _turned(density * solid.inertia, pose))
 
 
 def total(masses):
@@ -51,25 +42,21 @@ def total(masses):
     mass = sum(m.mass for m in masses)
     if not mass > 0:
         return None
-    center = tuple(sum(m.mass * m.center[i] for m in masses) / mass for i in range(3))
-    inertia = [[0.0] * 3 for _ in range(3)]
+    center = sum(m.mass * m.center for m in masses) / mass
+    inertia = np.zeros((3, 3))
     for m in masses:
-        d = frames.subtract(m.center, center)
-        square = sum(c * c for c in d)
-        for i in range(3):
-            for j in range(3):
-                inertia[i][j] += m.inertia[i][j] + m.mass * ((square if i == j else 0.0) - d[i] * d[j])
-    return Mass(mass, center, inertia, all(m.possible for m in masses) and is_possible(inertia))
+        d = m.center - center
+        inertia += m.inertia + m.mass * (d @ d * np.eye(3) - np.outer(d, d))
+    return Mass(mass, center, inertia, all(m.possible for m in masses) and _is_possible(np.linalg.eigvalsh(inertia)))
 
 
-def principal_moments(inertia):
-    """Eigenvalues of a symmetric 3 x 3 matrix, ascending."""
-    return np.linalg.eigvalsh(inertia)
+def _turned(inertia, pose):
+    return pose[:3, :3] @ inertia @ pose[:3, :3].T
 
 
-def is_possible(inertia):
-    """Whether a rigid body can have this inertia; the limit is that of the scene file."""
-    low, middle, high = principal_moments(inertia)
+def _is_possible(moments):
+    """Whether a rigid body can have these principal moments, in ascending order; the limits are the scene file's."""
+    low, middle, high = moments
     return low > 1e-9 * high and _obeys_triangle(low, middle, high)
 
 

@@ -5,12 +5,15 @@ Defaults, <frame>, <include>, and the angles and orders of <compiler> are follow
 """
 import math
 
+import numpy as np
+
 from . import frames
-from .failure import fail
-from .model import DEFAULT_DENSITY, Geometry, Inertial, Joint, Link, Model
+from .failure import fail, one_of
+from .model import DEFAULT_DENSITY, Geometry, Inertial, Joint, Link, Model, symmetric
 
 _MAX_INCLUDES = 16
 _JOINTS = ("joint", "freejoint")
+_GENERATED = ("replicate", "attach", "flexcomp", "composite")
 _SIZES = {"box": 3, "sphere": 1, "cylinder": 2, "capsule": 2, "ellipsoid": 3}
 
 
@@ -26,11 +29,10 @@ class MjcfReader:
         for element in root.all("default"):
             self._read_defaults(element, {}, "main")
         for asset in root.all("asset"):
-            for mesh in asset.all("mesh"):
-                values = self._merged(mesh, None)
-                name = values.get("name") or values.get("file", "").rsplit("/", 1)[-1].rsplit(".", 1)[0]
-                self.meshes[name] = (mesh, values)
-        tops = [body for world in root.all("worldbody") for body in self._bodies(world)]
+            for mesh in (self._merged(element, None) for element in asset.all("mesh")):
+                name = mesh.get("name") or mesh.get("file", "").rsplit("/", 1)[-1].rsplit(".", 1)[0]
+                self.meshes[name] = mesh
+        tops = [body for world in root.all("worldbody") for body in self._elements("body", world)]
         moving = [top for top in tops if top[0].all(*_JOINTS)]
         chosen = [top for top in tops if top[0].get("name") == model_name] if model_name else (moving or tops)
         if len(chosen) != 1:
@@ -41,18 +43,16 @@ class MjcfReader:
         model = Model(body.get("name") or root.get("model") or "vehicle", body, "MJCF")
         self._read_body(body, "", frames.IDENTITY, childclass, model)
         # The frame of the model is that of its first body.
-        model.pose = frames.compose(pose, self._pose(body, {}))
+        model.pose = pose @ self._pose(body)
         self._read_options(root, model)
         for other, _, _ in tops:
             if other is not body:
-                self.report.leave_out(f"body '{other.get('name', '')}' beside the vehicle ({other.source})")
+                self.report.leave_out(f"body '{other.get('name', '')}' beside the vehicle", other)
         for actuators in root.all("actuator"):
             for actuator in actuators.children:
                 target = actuator.get("joint") or actuator.get("site") or actuator.get("tendon") or ""
-                self.report.leave_out(
-                    f"actuator '{actuator.get('name', '')}' ({actuator.tag}) on '{target}': a force "
-                    f"of your simulator ({actuator.source})"
-                )
+                self.report.leave_out(f"actuator '{actuator.get('name', '')}' ({actuator.tag}) on '{target}': a force "
+                                      "of your simulator", actuator)
         return model
 
     def _include(self, element, depth):
@@ -80,186 +80,138 @@ class MjcfReader:
             self._read_defaults(child, values, child.get("class", "main"))
 
     def _merged(self, element, childclass):
-        """The attributes of an element with those of its default class."""
+        """The element with the attributes of its default class, too."""
         name = element.get("class") or childclass or "main"
         if name not in self.defaults:
-            fail(element.where, f"the class '{name}' does not exist", f"one of: {', '.join(self.defaults)}",
+            fail(element.where, f"the class '{name}' does not exist", one_of(self.defaults),
                  "a misspelt class, or a file that is not included", "Correct it")
-        return {**self.defaults[name].get(element.tag, {}), **element.attributes}
+        return element.with_attributes({**self.defaults[name].get(element.tag, {}), **element.attributes})
 
-    def _bodies(self, parent, pose=frames.IDENTITY, childclass=None):
-        """The bodies in an element and in its frames: element, pose of what contains it, class."""
+    def _elements(self, tag, parent, pose=frames.IDENTITY, childclass=None):
+        """The elements of a tag in an element and in its frames: element, pose of what contains it, class."""
         found = []
         for child in parent.children:
-            if child.tag == "body":
-                found.append((child, pose, child.get("childclass") or childclass))
+            inner = child.get("childclass") or childclass
+            if child.tag == tag:
+                found.append((child, pose, inner))
             elif child.tag == "frame":
-                inner = frames.compose(pose, self._pose(child, {}))
-                found += self._bodies(child, inner, child.get("childclass") or childclass)
-            elif child.tag in ("replicate", "attach", "flexcomp", "composite"):
-                fail(child.where, f"<{child.tag}>", "bodies that are written out",
-                     "a model that MuJoCo generates",
+                found += self._elements(tag, child, pose @ self._pose(child), inner)
+            elif child.tag in _GENERATED:
+                fail(child.where, f"<{child.tag}>", "bodies that are written out", "a model that MuJoCo generates",
                      "Save the compiled model (mj_saveLastXML) and import that")
-        return found
-
-    def _geoms(self, parent, pose=frames.IDENTITY, childclass=None):
-        found = []
-        for child in parent.children:
-            if child.tag == "geom":
-                found.append((child, pose, childclass))
-            elif child.tag == "frame":
-                inner = frames.compose(pose, self._pose(child, {}))
-                found += self._geoms(child, inner, child.get("childclass") or childclass)
         return found
 
     def _read_body(self, body, parent, pose, childclass, model):
         name = body.get("name") or f"body{len(model.links)}"
-        if name in model.links:
-            fail(body.where, f"two bodies are named '{name}'", "names that differ", "a copied body", "Rename one")
-        link = Link(name, pose, body.source, has_sensor=bool(body.all("camera")))
-        model.links[name] = link
+        link = Link(name, pose, body, has_sensor=bool(body.all("camera")))
+        model.add(link)
         if parent:
             joints = body.all(*_JOINTS)
             joint = joints[0].get("name", "") if joints else ""
             model.joints.append(Joint(joint or f"joint of {name}", parent, name, not joints, body))
         else:
             model.canonical = name
-        for geom, offset, geom_class in self._geoms(body, childclass=childclass):
-            parsed = self._geometry(geom, offset, self._merged(geom, geom_class), name)
-            if parsed is not None:
-                link.geometry.append(parsed)
+        for geom, offset, geom_class in self._elements("geom", body, childclass=childclass):
+            link.geometry += self._geometry(self._merged(geom, geom_class), offset, name)
         inertial = body.find("inertial")
-        link.inertial = None if inertial is None else self._inertial(inertial)
+        if inertial is not None:
+            moments = inertial.numbers("fullinertia", 6) or inertial.numbers("diaginertia", 3, [0.0] * 3)
+            mass = inertial.number("mass", 0.0, minimum=0.0)
+            link.inertial = Inertial(mass, self._pose(inertial), symmetric(*moments), inertial)
         mode = self.compiler.get("inertiafromgeom", "auto")
         link.mass_from_geometry = mode == "true" or (mode == "auto" and inertial is None)
-        for child, offset, child_class in self._bodies(body, childclass=childclass):
-            place = frames.compose(pose, frames.compose(offset, self._pose(child, {})))
-            self._read_body(child, name, place, child_class, model)
+        for child, offset, child_class in self._elements("body", body, childclass=childclass):
+            self._read_body(child, name, pose @ offset @ self._pose(child), child_class, model)
 
-    def _inertial(self, element):
-        pose = self._pose(element, {})
-        full = element.attribute_numbers("fullinertia", 6)
-        if full:
-            xx, yy, zz, xy, xz, yz = full
-            inertia = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
-        else:
-            xx, yy, zz = element.attribute_numbers("diaginertia", 3, [0.0] * 3)
-            inertia = [[xx, 0.0, 0.0], [0.0, yy, 0.0], [0.0, 0.0, zz]]
-        mass = element.attribute_numbers("mass", 1, [0.0], minimum=0.0)[0]
-        return Inertial(mass, pose[0], pose[1], inertia, element.source)
+    def _pose(self, element):
+        return frames.pose(element.numbers("pos", 3, [0.0] * 3), self._rotation(element))
 
-    def _angle(self, value):
-        return value if self.compiler.get("angle", "degree") == "radian" else math.radians(value)
+    def _rotation(self, element):
+        def angle(value):
+            return value if self.compiler.get("angle", "degree") == "radian" else math.radians(value)
 
-    def _pose(self, element, inherited):
-        values = {**inherited, **element.attributes}
-
-        def numbers(name, count):
-            return element.numbers(count, values[name], f"{name} of <{element.tag}>") if name in values else None
-
-        q = (1.0, 0.0, 0.0, 0.0)
-        for name, (first, last) in {"axisangle": (0, 3), "xyaxes": (0, 3), "zaxis": (0, 3)}.items():
-            if name in values and not any(element.numbers(None, values[name])[first:last]):
-                fail(element.where, f"{name} of <{element.tag}> has an axis of length 0", "a direction",
-                     "numbers that are missing", "Correct it")
-        if numbers("quat", 4):
-            q = frames.normalized(numbers("quat", 4))
-        elif numbers("axisangle", 4):
-            *axis, angle = numbers("axisangle", 4)
-            q = frames.about(axis, self._angle(angle))
-        elif numbers("euler", 3):
-            for letter, angle in zip(self.compiler.get("eulerseq", "xyz"), numbers("euler", 3)):
-                axis = [float(letter.lower() == name) for name in "xyz"]
-                turn = frames.about(axis, self._angle(angle))
-                q = frames.product(q, turn) if letter.islower() else frames.product(turn, q)
-        elif numbers("xyaxes", 6):
-            both = numbers("xyaxes", 6)
-            x = frames.normalized((0.0, *both[:3]))
-            along = sum(a * b for a, b in zip(x[1:], both[3:]))
-            y = frames.normalized((0.0, *(b - along * a for a, b in zip(x[1:], both[3:]))))
-            q = y and frames.from_columns(x[1:], y[1:], frames.product(x, y)[1:])
-        elif numbers("zaxis", 3):
-            q = frames.turning_z_to(numbers("zaxis", 3))
-        if q is None:
-            fail(element.where, "a quaternion of length 0, or two axes along one line", "a rotation",
+        quaternion, axis_angle = element.numbers("quat", 4), element.numbers("axisangle", 4)
+        euler, both, z = element.numbers("euler", 3), element.numbers("xyaxes", 6), element.numbers("zaxis", 3)
+        rotation = frames.IDENTITY[:3, :3]
+        if quaternion:
+            rotation = frames.from_quaternion(quaternion)
+        elif axis_angle:
+            rotation = frames.about(axis_angle[:3], angle(axis_angle[3]))
+        elif euler:
+            for letter, value in zip(self.compiler.get("eulerseq", "xyz"), euler):
+                turn = frames.about([float(letter.lower() == name) for name in "xyz"], angle(value))
+                rotation = rotation @ turn if letter.islower() else turn @ rotation
+        elif both:
+            normal = np.cross(both[:3], both[3:])
+            columns = np.array((both[:3], np.cross(normal, both[:3]), normal)).T
+            lengths = np.linalg.norm(columns, axis=0)
+            rotation = columns / lengths if all(lengths > 0) else None
+        elif z:
+            rotation = frames.turning_z_to(z)
+        if rotation is None:
+            fail(element.where, "a quaternion or an axis of length 0, or two axes along one line", "a rotation",
                  "numbers that are missing", "Correct it")
-        return (tuple(numbers("pos", 3) or (0.0, 0.0, 0.0)), q)
+        return rotation
 
-    def _geometry(self, geom, offset, values, body):
-        kind = values.get("type", "mesh" if "mesh" in values and "type" not in values else "sphere")
-        name = values.get("name") or f"geom of {body}"
-
-        def numbers(key, count=None, minimum=-math.inf):
-            return geom.numbers(count, values[key], f"{key} of '{name}'", minimum) if key in values else None
-
-        if values.get("fluidshape", "none") != "none":
-            self.report.leave_out(
-                f"fluidshape = \"{values['fluidshape']}\" of '{name}', fluidcoef "
-                f"{values.get('fluidcoef', 'default')}: drag and lift of MuJoCo's ellipsoid model; "
-                f"give [body.drag] and [body.added_mass] instead ({geom.source})"
-            )
-        pose = self._pose(geom, {key: value for key, value in values.items()})
-        size = list(numbers("size") or [])
-        if "fromto" in values and kind in ("capsule", "cylinder", "box", "ellipsoid"):
-            ends = numbers("fromto", 6)
-            axis = frames.subtract(ends[3:], ends[:3])
-            if not any(axis):
-                fail(geom.where, f"fromto of '{name}' has two equal points", "two different ends", "a typing error",
-                     "Correct one of them, or give pos and size")
-            pose = (tuple((a + b) / 2 for a, b in zip(ends[:3], ends[3:])), frames.turning_z_to(axis))
-            half = math.sqrt(sum(c * c for c in axis)) / 2
-            size = [size[0], half] if kind in ("capsule", "cylinder") else [size[0], size[0], half]
-        visual = values.get("contype", "1") == "0" and values.get("conaffinity", "1") == "0"
-        density = numbers("density", 1, minimum=0.0)
-        mass = numbers("mass", 1, minimum=0.0)
-        common = {
-            "pose": frames.compose(offset, pose),
-            "name": name,
-            "source": geom.source,
-            "element": geom,
-            "visual": visual,
-            "density": density[0] if density else DEFAULT_DENSITY,
-            "mass": mass[0] if mass else None,
-        }
+    def _geometry(self, geom, offset, body):
+        kind = geom.get("type", "mesh" if "mesh" in geom.attributes else "sphere")
+        name = geom.get("name") or f"geom of {body}"
+        if geom.get("fluidshape", "none") != "none":
+            self.report.leave_out(f"fluidshape = \"{geom.get('fluidshape')}\" of '{name}', fluidcoef "
+                                  f"{geom.get('fluidcoef', 'default')}: drag and lift of MuJoCo's ellipsoid model; "
+                                  "give [body.drag] and [body.added_mass] instead", geom)
+        visual = geom.get("contype", "1") == "0" and geom.get("conaffinity", "1") == "0"
+        result = Geometry(kind, (), offset @ self._pose(geom), name, geom, visual)
+        result.density = geom.number("density", DEFAULT_DENSITY, minimum=0.0)
+        result.mass = geom.number("mass", minimum=0.0)
         if kind == "mesh":
-            return self._mesh(geom, values.get("mesh", ""), common)
+            self._read_mesh(result)
+            return [result]
         if kind not in _SIZES:
             if not visual:
-                self.report.leave_out(f"geom '{name}': type \"{kind}\" encloses no volume ({geom.source})")
-            return None
+                self.report.leave_out(f"geom '{name}': type \"{kind}\" encloses no volume", geom)
+            return []
+        size = geom.numbers("size", default=[])
+        if "fromto" in geom.attributes and kind != "sphere":
+            ends = np.reshape(geom.numbers("fromto", 6), (2, 3))
+            axis = ends[1] - ends[0]
+            if not axis.any():
+                fail(geom.where, f"fromto of '{name}' has two equal points", "two different ends", "a typing error",
+                     "Correct one of them, or give pos and size")
+            result.pose = offset @ frames.pose((ends[0] + ends[1]) / 2, frames.turning_z_to(axis))
+            # The size states one radius, or half of one side.
+            size = [*(size[:1] * (_SIZES[kind] - 1)), float(np.linalg.norm(axis)) / 2]
         if len(size) < _SIZES[kind]:
             fail(geom.where, f"size of '{name}' has {len(size)} numbers", f"{_SIZES[kind]} for a {kind}",
                  "another type, or a default class that is missing", "Correct the geom")
         # MuJoCo's sizes are halves.
         sizes = {"box": tuple(2 * c for c in size[:3]), "sphere": (size[0],), "ellipsoid": tuple(size[:3])}
-        return Geometry(kind, sizes.get(kind) or (size[0], 2 * size[1]), **common)
+        result.size = sizes.get(kind) or (size[0], 2 * size[1])
+        return [result]
 
-    def _mesh(self, geom, name, common):
+    def _read_mesh(self, result):
+        geom, name = result.element, result.element.get("mesh", "")
         if name not in self.meshes:
-            fail(geom.where, f"the mesh '{name}' does not exist", f"one of: {', '.join(self.meshes) or 'none'}",
-                 "an asset of another file", "Add the <mesh> to <asset>")
-        mesh, values = self.meshes[name]
-        if "file" not in values:
+            fail(geom.where, f"the mesh '{name}' does not exist", one_of(self.meshes), "an asset of another file",
+                 "Add the <mesh> to <asset>")
+        mesh = self.meshes[name]
+        if "file" not in mesh.attributes:
             fail(mesh.where, f"the mesh '{name}' has no file", "a mesh in a file", "vertices in the model",
                  "Save the mesh as a file")
-        scale = mesh.numbers(3, values["scale"], "scale") if "scale" in values else [1.0, 1.0, 1.0]
-        reference = (
-            tuple(mesh.numbers(3, values.get("refpos", "0 0 0"), "refpos")),
-            frames.normalized(mesh.numbers(4, values.get("refquat", "1 0 0 0"), "refquat")),
-        )
-        pose = frames.compose(common.pop("pose"), frames.inverse(reference))
-        folder = self.compiler.get("meshdir", self.compiler.get("assetdir", ""))
-        uri = values["file"] if not folder or values["file"].startswith("/") else f"{folder}/{values['file']}"
-        return Geometry("mesh", tuple(scale), uri=uri, pose=pose, **common)
+        rotation = frames.from_quaternion(mesh.numbers("refquat", 4, [1.0, 0.0, 0.0, 0.0]))
+        if rotation is None:
+            fail(mesh.where, "refquat has the length 0", "a rotation", "numbers that are missing", "Correct it")
+        result.pose = result.pose @ frames.inverse(frames.pose(mesh.numbers("refpos", 3, [0.0] * 3), rotation))
+        result.size = tuple(mesh.numbers("scale", 3, [1.0] * 3))
+        folder, file = self.compiler.get("meshdir", self.compiler.get("assetdir", "")), mesh.get("file")
+        result.uri = file if not folder or file.startswith("/") else f"{folder}/{file}"
 
     def _read_options(self, root, model):
-        model.gravity, model.gravity_source = (0.0, 0.0, -9.81), "MuJoCo's default"
+        model.gravity, model.gravity_source = [0.0, 0.0, -9.81], "MuJoCo's default"
         for option in root.all("option"):
             if "gravity" in option.attributes:
-                model.gravity, model.gravity_source = (tuple(option.attribute_numbers("gravity", 3)), option.source)
+                model.gravity, model.gravity_source = option.numbers("gravity", 3), option.source
             for key, unit in (("density", "kg/m^3"), ("viscosity", "Pa s"), ("wind", "m/s")):
                 if key in option.attributes:
-                    self.report.leave_out(
-                        f"{key} = {option.get(key)} {unit} of <option>: the fluid of MuJoCo's own "
-                        f"drag, without buoyancy; set it to 0 there ({option.source})"
-                    )
+                    self.report.leave_out(f"{key} = {option.get(key)} {unit} of <option>: the fluid of MuJoCo's own "
+                                          "drag, without buoyancy; set it to 0 there", option)

@@ -3,15 +3,34 @@ from dataclasses import dataclass, field
 from graphlib import CycleError, TopologicalSorter
 from typing import Optional
 
-from .failure import fail
-from .frames import IDENTITY
+import numpy as np
+
+from . import frames
+from .failure import fail, one_of
 
 # The density [kg/m^3] with which gz-sim and MuJoCo compute the mass of a body from its geometry.
 DEFAULT_DENSITY = 1000.0
+# Shapes of SDF and URDF, and what their sizes consist of.
+_SIZES = {
+    "box": ("size",),
+    "sphere": ("radius",),
+    "cylinder": ("radius", "length"),
+    "capsule": ("radius", "length"),
+    "cone": ("radius", "length"),
+    "ellipsoid": ("radii",),
+}
+
+
+class _Written:
+    """What an element of a file describes."""
+
+    @property
+    def source(self):
+        return self.element.source
 
 
 @dataclass
-class Geometry:
+class Geometry(_Written):
     """A shape or a mesh, with its pose in the frame of its link.
 
     kind and size: box (x, y, z), sphere (r), cylinder and capsule (r, length without caps), cone (r, length),
@@ -20,36 +39,32 @@ class Geometry:
 
     kind: str
     size: tuple
-    pose: tuple
+    pose: np.ndarray
     name: str
-    source: str
     element: object
+    visual: bool
     uri: str = ""
     submesh: str = ""
     center_submesh: bool = False
-    visual: bool = False
     density: Optional[float] = None  # of links whose mass follows from geometry
     mass: Optional[float] = None
 
 
 @dataclass
-class Inertial:
-    """Mass, centre of mass in the frame of the link, inertia about it in axes that `rotation` turns to the link's."""
+class Inertial(_Written):
+    """Mass, pose of the centre of mass in the frame of the link, and the inertia about it in the axes of that pose."""
 
     mass: float
-    center: tuple
-    rotation: tuple
-    inertia: list  # 3 x 3
-    source: str
-    fluid_added_mass: Optional[list] = None  # 6 x 6, about the origin of the link and in its axes
-    fluid_source: str = ""
+    pose: np.ndarray
+    inertia: np.ndarray
+    element: object
 
 
 @dataclass
-class Link:
+class Link(_Written):
     name: str
-    pose: tuple
-    source: str
+    pose: np.ndarray
+    element: object
     inertial: Optional[Inertial] = None
     mass_from_geometry: bool = False
     geometry: list = field(default_factory=list)
@@ -66,30 +81,42 @@ class Joint:
 
 
 @dataclass
-class Plugin:
+class Plugin(_Written):
     """A plugin with the prefix of the model that it is written in, such as "arm::"."""
 
-    name: str
-    filename: str
     element: object
     prefix: str = ""
 
+    @property
+    def name(self):
+        return self.element.get("name", "")
+
+    @property
+    def filename(self):
+        return self.element.get("filename", "")
+
 
 @dataclass
-class Model:
+class Model(_Written):
     name: str
     element: object
     format: str
     links: dict = field(default_factory=dict)
     joints: list = field(default_factory=list)
     plugins: list = field(default_factory=list)
-    pose: tuple = IDENTITY  # in the world
-    gravity: Optional[tuple] = None
+    pose: np.ndarray = field(default_factory=frames.pose)  # in the world
+    gravity: Optional[list] = None
     gravity_source: str = ""
     canonical: str = ""  # the link whose frame a body prefers
 
-    def check_joints(self, report):
-        """Refuses joints in a circle, and warns of a link that is the child of several joints."""
+    def add(self, link):
+        if link.name in self.links:
+            fail(link.element.where, f"two of the model are named '{link.name}'", "names that differ",
+                 "a copied link, or a macro that was used twice", "Rename one")
+        self.links[link.name] = link
+
+    def links_below_joints(self, report):
+        """The links that are the child of joints, parents first: name, joints. Refuses joints in a circle."""
         joints = {}  # of each child: parent, joint
         for joint in self.joints:
             if joint.parent == joint.child:
@@ -98,17 +125,52 @@ class Model:
             if joint.parent in self.links and joint.child in self.links:
                 joints.setdefault(joint.child, {})[joint.parent] = joint
         try:
-            TopologicalSorter(joints).prepare()
+            order = list(TopologicalSorter(joints).static_order())
         except CycleError as error:
             circle = error.args[1]
             joint = joints[circle[1]][circle[0]]
             fail(joint.element.where, f"the joint '{joint.name}' closes a circle ({' -> '.join(circle)})",
                  "a tree of links", "a joint whose parent and child are exchanged",
                  "Correct or remove one of its joints")
-        for child, parents in joints.items():
-            if len(parents) > 1:
-                names, last = [f"'{joint.name}'" for joint in parents.values()], [*parents.values()][-1]
-                report.warn(
-                    f"the link '{child}' is the child of the joints {', '.join(names)}: a closed chain, which only "
-                    f"your simulator can hold together ({last.element.source})"
-                )
+        result = [(name, [*joints[name].values()]) for name in order if name in joints]
+        for child, above in result:
+            if len(above) > 1:
+                names = ", ".join(repr(joint.name) for joint in above)
+                report.warn(f"the link '{child}' is the child of the joints {names}: a closed chain, which only your "
+                            f"simulator can hold together ({above[-1].element.source})")
+        return result
+
+
+def read_inertial(element, pose, mass, moment, path="mass"):
+    """An <inertial> of SDF or URDF; `mass` and `moment` are what it has where it does not state them."""
+    xx, yy, zz = (element.number(f"inertia/{key}", moment) for key in ("ixx", "iyy", "izz"))
+    xy, xz, yz = (element.number(f"inertia/{key}", 0.0) for key in ("ixy", "ixz", "iyz"))
+    return Inertial(element.number(path, mass, minimum=0.0), pose, symmetric(xx, yy, zz, xy, xz, yz), element)
+
+
+def symmetric(xx, yy, zz, xy=0.0, xz=0.0, yz=0.0):
+    return np.array(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+
+
+def read_geometry(holder, pose, name, report):
+    """The shape or mesh of a <collision> or <visual> of SDF or URDF, in a list; empty if it encloses no volume."""
+    geometry = holder.find("geometry")
+    shape = next(iter(geometry.children if geometry else ()), None)
+    if shape is None or shape.tag == "empty":
+        return []
+    common = {"pose": pose, "name": name, "element": holder, "visual": holder.tag == "visual"}
+    if shape.tag == "mesh":
+        scale = shape.numbers("scale", (1, 3), [1.0])
+        mesh = Geometry("mesh", tuple(scale * 3 if len(scale) == 1 else scale), **common)
+        mesh.uri, mesh.submesh = shape.text_of("uri") or shape.text_of("filename"), shape.text_of("submesh/name")
+        mesh.center_submesh = shape.flag("submesh/center")
+        return [mesh]
+    if shape.tag not in _SIZES:
+        if holder.tag == "collision":
+            report.leave_out(f"{holder.tag} '{name}': <{shape.tag}> encloses no volume", holder)
+        return []
+    sizes = [(key, shape.numbers(key)) for key in _SIZES[shape.tag]]
+    for key, size in sizes:
+        if size is None:
+            fail(shape.where, f"<{shape.tag}> of '{name}' has no {key}", "a complete shape", "a deleted line", "Add it")
+    return [Geometry(shape.tag, tuple(number for _, size in sizes for number in size), **common)]

@@ -1,4 +1,6 @@
 """The scene as text: tables of keys, each with a comment that says where its value is from."""
+import numpy as np
+
 _TEXT_COLUMN = 44  # where comments begin, if the line before is shorter
 
 
@@ -13,13 +15,11 @@ class SceneText:
         self.lines += ["", f"[{name}]" if not name.startswith("[") else name]
 
     def key(self, key, value, comment):
-        rows = _matrix_rows(value)
-        if rows:
-            self.lines.append(f"{key} = [  # {_plain(comment)}")
-            self.lines += [f"  {row}," for row in rows]
-            self.lines.append("]")
-            return
-        self.lines.append(f"{f'{key} = {text(value)}':<{_TEXT_COLUMN}} # {_plain(comment)}")
+        if isinstance(value, list) and len(value) == 36:
+            rows = [f"  {', '.join(map(text, value[i : i + 6]))}," for i in range(0, 36, 6)]
+            self.lines += [f"{key} = [  # {_plain(comment)}", *rows, "]"]
+        else:
+            self.lines.append(f"{f'{key} = {text(value)}':<{_TEXT_COLUMN}} # {_plain(comment)}")
 
     def __str__(self):
         return "\n".join(self.lines).strip() + "\n"
@@ -47,27 +47,15 @@ def number(value):
 
 def vector(values):
     """Numbers in which those that are nothing but rounding are 0."""
-    largest = max((abs(v) for v in values), default=0.0)
+    largest = max(map(abs, values))
     return [0.0 if abs(v) <= 1e-12 * max(largest, 1e-3) else float(v) for v in values]
 
 
 def coefficients(matrix):
     """Six numbers for a diagonal, else 36 in rows."""
-    if all(matrix[i][j] == 0.0 for i in range(6) for j in range(6) if i != j):
-        return [matrix[i][i] for i in range(6)]
-    return [value for row in matrix for value in row]
-
-
-def _matrix_rows(value):
-    if isinstance(value, list) and len(value) == 36:
-        return [", ".join(map(text, value[6 * i : 6 * i + 6])) for i in range(6)]
-    return None
+    diagonal = np.diag(matrix)
+    return list(matrix.flat if (matrix - np.diag(diagonal)).any() else diagonal)
 
 
 def _plain(comment):
     return "".join(c if c.isprintable() else " " for c in comment)
-
-
-def quaternion(q):
-    sign = -1.0 if q[0] < 0 else 1.0
-    return vector([sign * c for c in q])

@@ -5,21 +5,24 @@ attached to links, and names such as arm::hand reach into nested models. Older f
 """
 import math
 
+import numpy as np
+
 from . import frames
-from .failure import fail
-from .model import Geometry, Inertial, Joint, Link, Model, Plugin
+from .failure import fail, one_of
+from .model import Inertial, Joint, Link, Model, Plugin, read_geometry, read_inertial
+from .xml_file import XmlReader
 
 _MAX_INCLUDES = 16
 _MAX_CHAIN = 200  # of frames that are relative to each other
-_ADDED_MASS_AXES = "xyzpqr"
 
 
 class _Scope:
     """A model, or the world, as it is written: names, and the poses that they have relative to other names."""
 
-    def __init__(self, element, name, parent=None, merged=False):
-        self.element, self.name, self.parent, self.merged = element, name, parent, merged
-        self.include = None  # the <include> that names this model
+    def __init__(self, element, name, parent=None, include=None):
+        self.element, self.name, self.parent = element, name, parent
+        self.include = include  # the <include> that names this model
+        self.merged = include is not None and include.flag("merge")
         self.entries = {}  # name: the element of a link, frame or joint
         self.models = {}  # name: a scope
         for child in element.all("link", "frame", "joint"):
@@ -31,26 +34,22 @@ class _Scope:
         """The pose of a frame, in this model's own frame."""
         if name in ("__model__", "", "world") and name not in self.entries:
             return frames.IDENTITY
-        if name in visited or len(visited) > _MAX_CHAIN:
-            chain = " -> ".join((*visited[-5:], name))
-            fail(where.where,
-                 f"the frame '{name}' is relative to itself, or to more than {_MAX_CHAIN} others ({chain})",
-                 "frames without a cycle", "a relative_to that was mistyped", "Correct it")
+        visited = _visited(visited, name, where)
         if name in self.entries:
-            element = self.entries[name]
-            default = {"link": "", "joint": element.child_text("child", ""), "frame": element.get("attached_to", "")}[
-                element.tag
-            ]
-            return self.read_pose(element, default, (*visited, name))
-        scope, rest = self.nested(name)
+            return self.read_pose(self.entries[name], self._attached(name), visited)
+        scope, rest = self._nested(name)
         if scope is None:
-            known = ", ".join([*self.entries, *self.models]) or "none"
-            fail(where.where, f"no frame is named '{name}'", f"one of: {known}",
+            fail(where.where, f"no frame is named '{name}'", one_of([*self.entries, *self.models]),
                  "a frame of another model, or a misspelt name", "Correct relative_to or attached_to")
-        outer = scope.model_pose((*visited, name))
-        return outer if rest == "" else frames.compose(outer, scope.pose_of(rest, where))
+        outer = scope.model_pose(visited)
+        return outer if rest == "" else outer @ scope.pose_of(rest, where)
 
-    def nested(self, name):
+    def _attached(self, name):
+        """The name of the frame that a frame or joint is attached to; of a link it is empty, the model."""
+        element = self.entries[name]
+        return {"link": "", "joint": element.text_of("child"), "frame": element.get("attached_to", "")}[element.tag]
+
+    def _nested(self, name):
         """The scope that a name leads into, and the rest of the name."""
         first, _, rest = name.partition("::")
         if first in self.models and not self.models[first].merged:
@@ -65,53 +64,42 @@ class _Scope:
         include = self.include
         element = self.element if include is None or include.find("pose") is None else include
         pose = self.parent.read_pose(element, "", visited)
-        placed = include.child_text("placement_frame", "") if include is not None else ""
+        placed = include.text_of("placement_frame") if include is not None else ""
         placed = placed or self.element.get("placement_frame", "")
-        if placed:
-            pose = frames.compose(pose, frames.inverse(self.pose_of(placed, element)))
-        return pose
+        return pose @ frames.inverse(self.pose_of(placed, element)) if placed else pose
 
     def read_pose(self, element, default, visited=()):
-        found = element.find("pose")
-        pose = frames.IDENTITY if found is None else parse_pose(found)
-        relative = default
-        if found is not None:
-            relative = found.get("relative_to") or found.get("frame") or default
-        return frames.compose(self.pose_of(relative, element, visited), pose)
+        relative = _relative_to(element) or default
+        return self.pose_of(relative, element, visited) @ _pose(element)
 
     def link_of(self, name, where, visited=()):
         """The full name of the link that a frame is attached to."""
         if name == "world":
             return "world"
-        if name in visited or len(visited) > _MAX_CHAIN:
-            fail(where.where, f"'{name}' is attached to itself, or through more than {_MAX_CHAIN} others",
-                 "a frame that is attached to a link", "an attached_to that was mistyped", "Correct it")
+        visited = _visited(visited, name, where)
         if name in self.entries:
-            element = self.entries[name]
-            if element.tag == "link":
+            if self.entries[name].tag == "link":
                 return self.prefix() + name
-            attached = element.child_text("child", "") if element.tag == "joint" else element.get("attached_to", "")
-            return self.link_of(attached or "__model__", where, (*visited, name))
+            return self.link_of(self._attached(name) or "__model__", where, visited)
         if name == "__model__":
             return self.canonical(where)
-        scope, rest = self.nested(name)
+        scope, rest = self._nested(name)
         if scope is None:
-            fail(where.where, f"no link or frame is named '{name}'",
-                 f"one of: {', '.join(self.entries) or 'none'}", "a misspelt name, or a link of another model",
-                 "Correct the joint")
+            fail(where.where, f"no link or frame is named '{name}'", one_of(self.entries),
+                 "a misspelt name, or a link of another model", "Correct the joint")
         return scope.link_of(rest or "__model__", where)
 
     def canonical(self, where):
         stated = self.element.get("canonical_link", "")
         if stated:
             return self.link_of(stated, where)
-        for element in self.entries.values():
+        for name, element in self.entries.items():
             if element.tag == "link":
-                return self.prefix() + element.get("name", "")
+                return self.prefix() + name
         for scope in self.models.values():
             return scope.canonical(where)
-        return fail(where.where, f"the model '{self.name}' has no link", "a model with a link",
-                    "an empty model", "Import another one")
+        return fail(where.where, f"the model '{self.name}' has no link", "a model with a link", "an empty model",
+                    "Import another one")
 
     def prefix(self):
         if self.parent is None or self.parent.parent is None:
@@ -119,21 +107,37 @@ class _Scope:
         return self.parent.prefix() + ("" if self.merged else self.name + "::")
 
 
-def parse_pose(element):
-    numbers = (
-        element.numbers((6, 7) if element.get("rotation_format") == "quat_xyzw" else 6)
-        if element.text.strip()
-        else [0.0] * 6
-    )
-    position, rotation = tuple(numbers[:3]), numbers[3:]
-    if element.get("rotation_format") == "quat_xyzw":
-        q = frames.normalized((rotation[3], *rotation[:3])) if len(rotation) == 4 else None
-        if q is None:
-            fail(element.where, "the quaternion of the pose is not one", "x y z and a quaternion x y z w",
-                 "numbers " "that are missing", "Correct the pose")
-        return (position, q)
-    factor = math.pi / 180 if element.get("degrees", "") in ("true", "1") else 1.0
-    return (position, frames.from_rpy(*(factor * angle for angle in rotation)))
+def _visited(visited, name, where):
+    """The names that lead to a frame, with another one."""
+    if name in visited or len(visited) > _MAX_CHAIN:
+        fail(where.where,
+             f"the frame '{name}' is relative to itself, or to more than {_MAX_CHAIN} others "
+             f"({' -> '.join((*visited[-5:], name))})",
+             "frames without a cycle", "a relative_to or attached_to that was mistyped", "Correct it")
+    return (*visited, name)
+
+
+def _relative_to(element):
+    pose = element.find("pose")
+    return "" if pose is None else pose.get("relative_to") or pose.get("frame") or ""
+
+
+def _pose(holder):
+    """The <pose> of an element, in the frame that it is relative to."""
+    element = holder.find("pose")
+    if element is None:
+        return frames.IDENTITY
+    is_quaternion = element.get("rotation_format") == "quat_xyzw"
+    numbers = element.numbers("", 7 if is_quaternion else 6, [0.0] * 6)
+    position, rotation = numbers[:3], numbers[3:]
+    if len(rotation) == 3:
+        factor = math.pi / 180 if element.flag("degrees") else 1.0
+        return frames.pose(position, frames.from_rpy(*(factor * angle for angle in rotation)))
+    turned = frames.from_quaternion((rotation[3], *rotation[:3]))
+    if turned is None:
+        fail(element.where, "the quaternion of the pose has the length 0", "x y z and a quaternion x y z w",
+             "numbers that are missing", "Correct the pose")
+    return frames.pose(position, turned)
 
 
 class SdfReader:
@@ -146,10 +150,8 @@ class SdfReader:
         holder = world if world is not None else root
         candidates = []
         for element in holder.all("model", "include"):
-            name = element.child_text("name", "") if element.tag == "include" else element.get("name", "")
-            if element.tag == "include":
-                # Only the include that is wanted is read: others may be missing here.
-                name = name or element.child_text("uri", "").rstrip("/").split("/")[-1]
+            # Only the include that is wanted is read: others may be missing here.
+            name = element.text_of("name") or element.text_of("uri").rstrip("/").split("/")[-1]
             candidates.append((name, element))
         moving = [item for item in candidates if len(candidates) == 1 or not item[1].flag("static")]
         chosen = [item for item in candidates if item[0] == model_name] if model_name else moving
@@ -160,41 +162,35 @@ class SdfReader:
                 actual = f"has {len(chosen)} models of the name '{model_name}' (it has: {names})"
             fail(root.where, actual, "one model to import", "a world of several models, or a misspelt name",
                  "Choose one with --model NAME")
-        outer = _Scope(holder, "")
-        name, element = chosen[0]
-        scope = self._scope(element, outer, 0)
-        outer.models[scope.name] = scope
+        element = chosen[0][1]
+        scope = self._scope(element, _Scope(holder, ""), 0)
         model = Model(scope.name or "vehicle", element, "SDF", pose=scope.model_pose())
         self._flatten(scope, frames.IDENTITY, model)
         model.canonical = scope.canonical(element)
+        model.links_below_joints(self.report)
         if world is not None:
-            model.plugins += [Plugin(p.get("name", ""), p.get("filename", ""), p) for p in world.all("plugin")]
+            model.plugins += [Plugin(plugin) for plugin in world.all("plugin")]
             gravity = world.find("gravity")
             if gravity is not None:
-                model.gravity, model.gravity_source = tuple(gravity.numbers(3)), gravity.source
+                model.gravity, model.gravity_source = gravity.numbers("", 3), gravity.source
         return model
 
     def _scope(self, element, parent, depth):
-        include, merged = None, False
-        if element.tag == "include":
-            include, merged = element, element.get("merge", "") in ("true", "1")
-            element = self._included(include, depth)
-        name = (include.child_text("name", "") if include is not None else "") or element.get("name", "")
-        scope = _Scope(element, name, parent, merged)
-        scope.include = include
         if depth > _MAX_INCLUDES:
-            fail(element.where, "models are nested too deeply", f"at most {_MAX_INCLUDES} levels",
-                 "a model that includes itself", "Break the cycle")
+            fail(element.where, "models are nested, or include each other, too deeply",
+                 f"at most {_MAX_INCLUDES} levels", "a model that includes itself", "Break the cycle")
+        include, name = None, ""
+        if element.tag == "include":
+            include, name = element, element.text_of("name")
+            element = self._included(include)
+        scope = _Scope(element, name or element.get("name", ""), parent, include)
+        parent.models[scope.name] = scope
         for child in element.all("model", "include"):
-            inner = self._scope(child, scope, depth + 1)
-            scope.models[inner.name] = inner
+            self._scope(child, scope, depth + 1)
         return scope
 
-    def _included(self, include, depth):
-        if depth > _MAX_INCLUDES:
-            fail(include.where, "models include each other too deeply", f"at most {_MAX_INCLUDES} levels",
-                 "a model that includes itself", "Break the cycle")
-        uri = include.child_text("uri", "")
+    def _included(self, include):
+        uri = include.text_of("uri")
         found = self.search.find(uri, include, "model")
         root = self.reader.read(model_file(found, include) if found.is_dir() else found, include)
         model = root.find("model")
@@ -207,137 +203,51 @@ class SdfReader:
         """Adds what a scope contains; `pose` is that of its frame in the model."""
         prefix = scope.prefix()
         for element in scope.element.all("link"):
-            name = element.get("name", "")
-            if prefix + name in model.links:
-                fail(element.where, f"two links are named '{prefix + name}'", "names that differ",
-                     "a copied link", "Rename one")
-            place = frames.compose(pose, scope.pose_of(name, element))
-            model.links[prefix + name] = self._link(scope, element, prefix + name, place, pose)
+            place = pose @ scope.pose_of(element.get("name"), element)
+            model.add(self._link(scope, element, prefix + element.get("name"), place, pose))
         for element in scope.element.all("joint"):
-            ends = []
-            for tag in ("parent", "child"):
-                found = element.find(tag)
-                text = element.child_text(tag, "")
-                if found is not None and not text and found.find("link_name") is not None:
-                    text = found.child_text("link_name", "")
-                ends.append(scope.link_of(text, element))
-            name, is_fixed = prefix + element.get("name", ""), element.get("type", "") == "fixed"
+            ends = [
+                scope.link_of(element.text_of(end) or element.text_of(f"{end}/link_name"), element)
+                for end in ("parent", "child")
+            ]
+            name, is_fixed = prefix + element.get("name"), element.get("type") == "fixed"
             model.joints.append(Joint(name, *ends, is_fixed, element))
-        holders = [scope.element] + ([scope.include] if scope.include is not None else [])
-        for holder in holders:
-            for plugin in holder.all("plugin"):
-                model.plugins.append(Plugin(plugin.get("name", ""), plugin.get("filename", ""), plugin, prefix))
+        for holder in (scope.element, *([scope.include] if scope.include is not None else [])):
+            model.plugins += [Plugin(plugin, prefix) for plugin in holder.all("plugin")]
         for inner in scope.models.values():
-            self._flatten(inner, frames.compose(pose, inner.model_pose()), model)
+            self._flatten(inner, pose @ inner.model_pose(), model)
 
     def _link(self, scope, element, name, place, scope_pose):
-        link = Link(name, place, element.source, has_sensor=bool(element.all("sensor")))
+        link = Link(name, place, element, has_sensor=bool(element.all("sensor")))
 
         def in_link(child):
-            found = child.find("pose")
-            relative = None if found is None else found.get("relative_to") or found.get("frame")
-            if not relative:
-                return frames.IDENTITY if found is None else parse_pose(found)
-            in_model = frames.compose(scope_pose, scope.read_pose(child, ""))
-            return frames.compose(frames.inverse(place), in_model)
+            if not _relative_to(child):
+                return _pose(child)
+            return frames.inverse(place) @ scope_pose @ scope.read_pose(child, "")
 
-        inertial = element.find("inertial")
-        link.mass_from_geometry = inertial is not None and inertial.get("auto", "") in ("true", "1")
-        if not link.mass_from_geometry:
-            link.inertial = self._inertial(inertial, element, in_link)
-        density = None if inertial is None else inertial.number("density", minimum=0.0)
-        for child in element.all("collision", "visual"):
-            geometry = child.find("geometry")
-            if geometry is None:
-                continue
-            parsed = self._geometry(geometry, child, in_link(child))
-            if parsed is not None:
-                parsed.visual = child.tag == "visual"
-                parsed.density = child.number("density", density, minimum=0.0)
-                link.geometry.append(parsed)
-        return link
-
-    def _inertial(self, inertial, link, in_link):
+        inertial, density = element.find("inertial"), None
         if inertial is None:
-            self.report.note(f"the link '{link.get('name')}' has no inertial: SDF gives it 1 kg ({link.source})")
-            return Inertial(1.0, (0, 0, 0), frames.IDENTITY[1], [[1, 0, 0], [0, 1, 0], [0, 0, 1]], link.source)
-        pose = in_link(inertial)
-        found = inertial.find("inertia")
-
-        def entry(tag, default):
-            return default if found is None else found.number(tag, default)
-
-        xx, yy, zz = (entry(tag, 1.0) for tag in ("ixx", "iyy", "izz"))
-        xy, xz, yz = (entry(tag, 0.0) for tag in ("ixy", "ixz", "iyz"))
-        result = Inertial(
-            inertial.number("mass", 1.0, minimum=0.0),
-            pose[0],
-            pose[1],
-            [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]],
-            inertial.source,
-        )
-        fluid = inertial.find("fluid_added_mass")
-        if fluid is not None:
-            added = frames.zeros()
-            for i, row in enumerate(_ADDED_MASS_AXES):
-                for j, column in enumerate(_ADDED_MASS_AXES[i:], i):
-                    added[i][j] = added[j][i] = fluid.number(row + column, 0.0)
-            result.fluid_added_mass, result.fluid_source = added, fluid.source
-        return result
-
-    def _geometry(self, geometry, holder, pose):
-        shape = next(iter(geometry.children), None)
-        name = holder.get("name", holder.tag)
-
-        def lengths(*tags):
-            values = []
-            for tag in tags:
-                if shape.find(tag) is None:
-                    fail(shape.where, f"<{shape.tag}> of '{name}' has no <{tag}>", "a complete shape",
-                         "a deleted line", "Add it")
-                values += shape.find(tag).numbers()
-            return tuple(values)
-
-        common = {"pose": pose, "name": name, "source": holder.source, "element": holder}
-        if shape is None or shape.tag == "empty":
-            return None
-        if shape.tag == "box":
-            return Geometry("box", lengths("size"), **common)
-        if shape.tag == "sphere":
-            return Geometry("sphere", lengths("radius"), **common)
-        if shape.tag in ("cylinder", "capsule", "cone"):
-            return Geometry(shape.tag, lengths("radius", "length"), **common)
-        if shape.tag == "ellipsoid":
-            return Geometry("ellipsoid", lengths("radii"), **common)
-        if shape.tag == "mesh":
-            scale = tuple(shape.find("scale").numbers(3)) if shape.find("scale") is not None else (1.0, 1.0, 1.0)
-            submesh = shape.find("submesh")
-            return Geometry(
-                "mesh",
-                scale,
-                uri=shape.child_text("uri", ""),
-                submesh="" if submesh is None else submesh.child_text("name", ""),
-                center_submesh=submesh is not None and submesh.flag("center"),
-                **common,
-            )
-        if holder.tag == "collision":
-            self.report.leave_out(f"{holder.tag} '{name}': <{shape.tag}> encloses no volume ({holder.source})")
-        return None
+            self.report.note(f"the link '{element.get('name')}' has no inertial: SDF gives it 1 kg", link)
+            link.inertial = Inertial(1.0, frames.IDENTITY, np.eye(3), element)
+        else:
+            link.mass_from_geometry = inertial.flag("auto")
+            density = inertial.number("density", minimum=0.0)
+            if not link.mass_from_geometry:
+                link.inertial = read_inertial(inertial, in_link(inertial), 1.0, 1.0)
+        for child in element.all("collision", "visual"):
+            for geometry in read_geometry(child, in_link(child), child.get("name", child.tag), self.report):
+                geometry.density = child.number("density", density, minimum=0.0)
+                link.geometry.append(geometry)
+        return link
 
 
 def model_file(folder, element=None):
     """The newest SDF file that the model.config of a folder names; `element` names the folder."""
-    from .xml_file import XmlReader
-
     config = folder / "model.config"
     if config.exists():
-        named = [
-            (element.get("version", "0"), element.text.strip())
-            for element in XmlReader().read(config).all("sdf")
-            if element.text.strip()
-        ]
+        named = [(e.get("version", "0"), e.text.strip()) for e in XmlReader().read(config).all("sdf") if e.text.strip()]
         if named:
-            return folder / max(named, key=lambda pair: [int(n) if n.isdigit() else 0 for n in pair[0].split(".")])[1]
+            return folder / max(named, key=lambda pair: [int(n) if n.isdecimal() else 0 for n in pair[0].split(".")])[1]
     if (folder / "model.sdf").exists():
         return folder / "model.sdf"
     return fail(f"{element.where}: {folder}" if element else folder, "has neither model.config nor model.sdf",

@@ -3,6 +3,7 @@
 An entity can make a short file long or name another file, and no format that is read here needs any. So expat is
 given handlers that refuse them, which is what defusedxml does too; that one keeps no line numbers.
 """
+import copy
 import math
 import xml.parsers.expat
 from pathlib import Path
@@ -58,42 +59,54 @@ class Element:
         for child in self.children:
             yield from child.walk()
 
-    def child_text(self, path, default=None):
-        found = self.find(path)
-        return default if found is None or not found.text.strip() else found.text.strip()
+    def _value(self, path):
+        """An attribute, or else the text of a child or (path "") of the element: element, name, text or None."""
+        *steps, name = path.split("/")
+        holder = self.find("/".join(steps)) if steps else self
+        if holder is not None and name in holder.attributes:
+            return holder, f"{name} of <{holder.tag}>", holder.attributes[name]
+        found = holder.find(name) if name and holder is not None else holder
+        return (None, "", None) if found is None else (found, f"<{found.tag}>", found.text.strip() or None)
 
-    def numbers(self, count=None, text=None, what=None, minimum=-math.inf):
-        """The numbers in the text; `count` is how many, or a tuple of what is allowed."""
-        words = (self.text if text is None else text).replace(",", " ").split()
-        what = what or f"<{self.tag}>"
+    def text_of(self, path, default=""):
+        text = self._value(path)[2]
+        return default if text is None else text.strip()
+
+    def flag(self, path):
+        return self.text_of(path).lower() in ("true", "1")
+
+    def numbers(self, path="", count=None, default=None, minimum=-math.inf):
+        """The numbers that a path leads to; `count` is how many, or a tuple of what is allowed."""
+        element, what, text = self._value(path)
+        if text is None:
+            return default
+        words = text.replace(",", " ").split()
         try:
             values = [float(word) for word in words]
         except ValueError:
             values = None
         if values is None or not all(abs(value) <= _MAX_NUMBER for value in values):
-            fail(self.where, f"{what} is '{_short(' '.join(words))}'",
+            fail(element.where, f"{what} is '{_short(' '.join(words))}'",
                  f"finite numbers up to {_MAX_NUMBER:g} separated by spaces",
                  "a template that was not expanded, or a misspelt number", "Write the numbers out")
         allowed = (count,) if isinstance(count, int) else count
         if allowed and len(values) not in allowed:
-            fail(self.where, f"{what} has {len(values)} numbers", " or ".join(map(str, allowed)),
+            fail(element.where, f"{what} has {len(values)} numbers", " or ".join(map(str, allowed)),
                  "numbers that are missing or too many", "Correct the model")
         if any(value < minimum for value in values):
-            fail(self.where, f"{what} is {', '.join(f'{value:g}' for value in values)}", f"at least {minimum:g}",
+            fail(element.where, f"{what} is {', '.join(f'{value:g}' for value in values)}", f"at least {minimum:g}",
                  "a mistyped sign", "Correct the model")
         return values
 
-    def number(self, path, default=None, minimum=-math.inf):
-        found = self.find(path)
-        return default if found is None or not found.text.strip() else found.numbers(1, minimum=minimum)[0]
+    def number(self, path="", default=None, minimum=-math.inf):
+        values = self.numbers(path, 1, None, minimum)
+        return values[0] if values else default
 
-    def flag(self, path, default=False):
-        return self.child_text(path, str(default)).lower() in ("true", "1")
-
-    def attribute_numbers(self, name, count=None, default=None, minimum=-math.inf):
-        if name not in self.attributes:
-            return default
-        return self.numbers(count, self.attributes[name], f"{name} of <{self.tag}>", minimum)
+    def with_attributes(self, attributes):
+        """The same element with other attributes."""
+        result = copy.copy(self)
+        result.attributes = attributes
+        return result
 
 
 def _short(text):
