@@ -88,7 +88,7 @@ def read_model(options, report):
     search = FileSearch(path, options.path)
     macro = next((element for element in root.walk() if element.tag.startswith("xacro:")), None)
     if macro is not None:
-        fail(macro.where, "has elements of xacro", "an expanded URDF", "a description with macros",
+        fail(macro, "has elements of xacro", "an expanded URDF", "a description with macros",
              f"Expand it: xacro {path.name} > expanded.urdf")
     if root.tag == "robot":
         return read_urdf(root, report), search
@@ -96,7 +96,7 @@ def read_model(options, report):
         return sdf.SdfReader(reader, search, report).read(root, options.name), search
     if root.tag == "mujoco":
         return MjcfReader(reader, search, report).read(root, options.name), search
-    return fail(root.where, f"the root element is <{root.tag}>", "<sdf>, <robot> or <mujoco>",
+    return fail(root, f"the root element is <{root.tag}>", "<sdf>, <robot> or <mujoco>",
                 "a file of another kind", "Name the SDF, URDF or MJCF file")
 
 
@@ -231,7 +231,7 @@ class Importer:
         if not part.contents:
             return os.path.relpath(part.file.resolve(), self.folder)
         if not self.options.output:
-            fail(part.geometry.element.where,
+            fail(part.geometry.element,
                  f"{part.geometry.kind} '{part.geometry.name}' becomes a mesh file beside the scene",
                  "the name of a scene file", "the scene on standard output", "Name it with -o SCENE.toml")
         name = f"{Path(self.options.output).stem}.d/body{number}_part{index}{part.suffix}"
@@ -295,10 +295,8 @@ class Importer:
                 keys.append((table, key, matrix, f"{changed}; {source}"))
         immersion = "none" if any(c.immersion == "none" for c in loads) else "volume"
         if immersion != "none":
-            self.report.note(
-                "the coefficients are scaled by the submerged share of the volume; if they were measured "
-                'afloat, set immersion = "none"'
-            )
+            self.report.note("the coefficients are scaled by the submerged share of the volume; if they were measured "
+                             'afloat, set immersion = "none"')
         for table, rows in itertools.groupby(keys, lambda row: row[0]):
             self.text.table(table)
             for _, key, matrix, comment in rows:
@@ -369,21 +367,20 @@ def main(argv=None, version="of the Python package buoyancy"):
         importer = Importer(options)
         importer.write()
         print_report(importer, sys.stdout if options.output else sys.stderr)
+        return 0
     except ImportFailure as failure:
-        print(f"buoyancy-import: {' '.join(str(failure).split())}", file=sys.stderr)
-        return 2
+        status, text = 2, str(failure)
     except (ArithmeticError, LookupError, RecursionError, TypeError, ValueError) as error:
-        print(
-            f"buoyancy-import: {options.model}: cannot be imported ({type(error).__name__}: {error}); expected a valid "
-            "model. Likely cause: an element with a value of another kind. Check the model with the tool of its format "
-            "(gz sdf --check, check_urdf, MuJoCo's compile).",
-            file=sys.stderr,
+        status = 2
+        text = (
+            f"{options.model}: cannot be imported ({type(error).__name__}: {error}); expected a valid model. Likely "
+            "cause: an element with a value of another kind. Check the model with the tool of its format (gz sdf "
+            "--check, check_urdf, MuJoCo's compile)."
         )
-        return 2
     except OSError as error:
-        print(f"buoyancy-import: {error.filename}: cannot be written: {error.strerror}", file=sys.stderr)
-        return 1
-    return 0
+        status, text = 1, f"{error.filename}: cannot be written: {error.strerror}"
+    print(f"buoyancy-import: {' '.join(text.split())}", file=sys.stderr)
+    return status
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ def group_links(model, options, report):
     """The bodies of a model, in the order of their links."""
     for name in [*options.drop, *options.keep]:
         if name not in model.links:
-            fail(model.element.where, f"no link is named '{name}'", one_of(model.links),
+            fail(model.element, f"no link is named '{name}'", one_of(model.links),
                  "a misspelt name of --drop or --keep", "Correct the option")
     kept = {name: link for name, link in model.links.items() if name not in options.drop}
     for name in options.drop:
@@ -94,7 +94,7 @@ def _without_accessories(model, groups, options, report):
         kind, other = ("visual", "collision") if options.visual else ("collision", "visual")
         option = "without --visual" if options.visual else "with --visual"
         has_other = any(g.visual != options.visual for group in groups for link in group.links for g in link.geometry)
-        fail(model.element.where, f"no body has a volume in its {kind} geometry", "boxes, cylinders or meshes",
+        fail(model.element, f"no body has a volume in its {kind} geometry", "boxes, cylinders or meshes",
              "a model for another purpose",
              f"Import the {other} geometry {option}" if has_other else "Add geometry to its links")
     return result

@@ -5,13 +5,25 @@ class ImportFailure(Exception):
     """A model that cannot be imported; one line that says what was found, what is expected, and what to do."""
 
 
-def fail(where, actual, expected, cause, hint):
-    text = f"{where}: {actual}; expected {expected}. Likely cause: {cause}. {hint}."
+def fail(place, actual, expected, cause, hint):
+    """Ends the import because of something at an element, or in a file."""
+    text = f"{getattr(place, 'where', place)}: {actual}; expected {expected}. Likely cause: {cause}. {hint}."
     raise ImportFailure(" ".join(text.split()))
 
 
 def one_of(names):
     return f"one of: {', '.join(names) or 'none'}"
+
+
+def choose(root, candidates, preferred, name, kind):
+    """Of pairs of a name and a value, the value that --model names; without it the only one of those preferred."""
+    chosen = [pair for pair in candidates if pair[0] == name] if name else preferred
+    if len(chosen) != 1:
+        names = ", ".join(f"'{other}'" for other, _ in preferred) or "none"
+        wanted = f", {len(chosen)} of them named '{name}'" if name else ""
+        fail(root, f"has {len(preferred)} {kind} to choose from ({names}){wanted}", f"one of its {kind}",
+             "a file with several vehicles, or a misspelt name", "Choose one with --model NAME")
+    return chosen[0][1]
 
 
 class Report:

@@ -49,5 +49,5 @@ class FileSearch:
         if "$" in uri:
             hint = "Expand the file first (xacro, envsubst)"
         searched = ", ".join(dict.fromkeys(str(candidate.parent) for candidate in candidates))
-        return fail(element.where, f"'{uri}' is not found", f"a {kind}, searched in {searched}",
+        return fail(element, f"'{uri}' is not found", f"a {kind}, searched in {searched}",
                     "another package, or a search path that is not set", hint)

@@ -54,10 +54,7 @@ def quaternion(r):
 
 def about(axis, angle):
     """The rotation by `angle` [rad] about `axis`, of any length but 0, for which it is None."""
-    length = np.linalg.norm(axis)
-    if not length > 0.0:
-        return None
-    return from_quaternion((np.cos(angle / 2), *(np.sin(angle / 2) / length * np.array(axis))))
+    return from_quaternion((np.cos(angle / 2) * np.linalg.norm(axis), *(np.sin(angle / 2) * np.array(axis))))
 
 
 def from_rpy(roll, pitch, yaw):
@@ -67,11 +64,8 @@ def from_rpy(roll, pitch, yaw):
 
 def turning_z_to(direction):
     """The smallest rotation that turns the axis z to a direction of any length but 0, for which it is None."""
-    length = np.linalg.norm(direction)
-    if not length > 0.0:
-        return None
-    x, y, z = np.array(direction) / length
-    return from_quaternion((1 + z, -y, x, 0.0) if z >= -1 + 1e-12 else (0.0, 1.0, 0.0, 0.0))
+    (x, y, z), length = direction, np.linalg.norm(direction)
+    return from_quaternion((length + z, -y, x, 0.0) if z > (1e-12 - 1) * length else (0.0, length, 0.0, 0.0))
 
 
 def turned_6(k, rotation):
@@ -86,8 +80,3 @@ def moved_6(k, offset):
     lever = np.eye(6)
     lever[3:, :3] = ((0, -z, y), (z, 0, -x), (-y, x, 0))
     return lever @ k @ lever.T
-
-
-def is_right_angled(rotation):
-    """Whether the rotation only exchanges and reverses axes."""
-    return np.all(np.minimum(abs(rotation), abs(abs(rotation) - 1)) < 1e-9)

@@ -39,7 +39,7 @@ def solid_of(geometry):
     """The solid of a shape, in closed form."""
     size, count = geometry.size, {"box": 3, "ellipsoid": 3, "sphere": 1}.get(geometry.kind, 2)
     if len(size) != count or any(not 0 < c < _MAX_LENGTH for c in size):
-        fail(geometry.element.where, f"{geometry.kind} '{geometry.name}' has the size {list(size)}",
+        fail(geometry.element, f"{geometry.kind} '{geometry.name}' has the size {list(size)}",
              f"{count} lengths above 0, in m", "a size that is missing or in another unit", "Correct the model")
     kind, centroid = geometry.kind, np.zeros(3)
     if kind in ("box", "sphere", "ellipsoid"):
@@ -150,8 +150,7 @@ class PartMaker:
         geometry = part.geometry
         part.file, part.scale = self.search.find(geometry.uri, geometry.element, "mesh file"), geometry.size
         if part.file.is_dir() or any(c == 0 for c in part.scale):
-            fail(geometry.element.where,
-                 f"the mesh '{geometry.uri}' is a folder, or its scale {list(part.scale)} has a 0",
+            fail(geometry.element, f"the mesh '{geometry.uri}' is a folder, or its scale {list(part.scale)} has a 0",
                  "a mesh file and factors that are not 0", "a uri that was cut off", "Correct the model")
         if geometry.submesh:
             part.contents, part.suffix = _submesh(part.file, geometry), part.file.suffix
@@ -222,9 +221,9 @@ def _submesh(path, geometry):
         if _keep_instances(root, name, titles, names, False):
             return _xml_text(root)
     else:
-        return fail(geometry.element.where, f"<submesh> of '{path.name}'", "a submesh of .obj or .dae",
+        return fail(geometry.element, f"<submesh> of '{path.name}'", "a submesh of .obj or .dae",
                     "another format", "Save the submesh as a file of its own")
-    return fail(geometry.element.where, f"'{path.name}' has no submesh '{name}'", one_of(names), "a misspelt name",
+    return fail(geometry.element, f"'{path.name}' has no submesh '{name}'", one_of(names), "a misspelt name",
                 "Correct <submesh>")
 
 
@@ -271,7 +270,7 @@ def _contains(geometry, points):
 
 
 def overlap(a, b):
-    """The volume [m^3] that two shapes share, sampled unless both are boxes along the axes; None for a mesh."""
+    """The volume [m^3] that two shapes share, sampled in the box that they share; None for a mesh."""
     if "mesh" in (a.geometry.kind, b.geometry.kind):
         return None
     poses, boxes = [_center(part) for part in (a, b)], []
@@ -281,8 +280,6 @@ def overlap(a, b):
     low, high = np.maximum(boxes[0][0], boxes[1][0]), np.minimum(boxes[0][1], boxes[1][1])
     if np.any(high - low <= 1e-9):
         return 0.0
-    if all(p.geometry.kind == "box" and frames.is_right_angled(p.pose[:3, :3]) for p in (a, b)):
-        return math.prod(high - low)
     axes = [low[i] + (high[i] - low[i]) * (np.arange(_GRID) + 0.5) / _GRID for i in range(3)]
     points = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
     inside = [_contains(p.geometry, (points - pose[:3, 3]) @ pose[:3, :3]) for p, pose in zip((a, b), poses)]

@@ -27,10 +27,17 @@ _WAVE_DEFAULTS = {
 }
 _AIR = 100.0  # kg/m^3: a layer that is lighter is the air above the water
 # Keys of plugins whose buoyancy is not that of the geometry.
+_GEOMETRY = "buoyancy follows from the geometry"
 _UUV_SHAPE = ("metacentric_width", "metacentric_length", "submerged_height")
 _VRX_SHAPE = ("hullRadius", "boatWidth", "boatLength", "wave_model")
 _SURFACE_SHAPE = ("vehicle_length", "vehicle_width", "hull_radius", "hull_length", "points", "buoyancy", "linear_drag",
                   "angular_drag")
+_UUV_MATRICES = {
+    "added_mass": "added_mass",
+    "linear_damping": "linear",
+    "quadratic_damping": "quadratic",
+    "linear_damping_forward_speed": "",
+}
 # Drag coefficients of cylinders in uuv_simulator, up to a ratio of length to diameter.
 _CD_ALONG = ((1, 0.91), (2, 0.85), (4, 0.87), (math.inf, 0.99))
 _CD_ACROSS = ((1, 0.63), (2, 0.68), (5, 0.74), (10, 0.82), (math.inf, 0.98))
@@ -115,7 +122,7 @@ class Hydrodynamics:
 
     def _set_water(self, key, value, element):
         if key == "density" and not value > 0:
-            fail(element.where, f"the density of the water is {value:g} kg/m^3", "above 0 kg/m^3",
+            fail(element, f"the density of the water is {value:g} kg/m^3", "above 0 kg/m^3",
                  "a mistyped number", "Correct the model")
         if key in self.water and self.water[key][0] != value:
             self.report.warn(f"{key} of the water is {self.water[key][0]} ({self.water[key][1]}) and {value} "
@@ -129,10 +136,11 @@ class Hydrodynamics:
             if value is not None:
                 self._set_water(key, value, element.find(tag))
 
-    def _leave_out(self, element, tags, describe):
-        """Reports the children that have one of these tags; `describe` makes a sentence of a child and its text."""
+    def _leave_out(self, element, tags, why, equals=" ", of=""):
+        """Reports the children that have one of these tags, and their text."""
         for child in itertools.chain.from_iterable(map(element.all, tags)):
-            self.report.leave_out(describe(child, child.text.strip()), child)
+            text = child.text.strip()
+            self.report.leave_out(f"<{child.tag}>{equals + text if text else ''}{of}: {why}", child)
 
     def gz_hydrodynamics(self, plugin, element):
         keys = _coefficients(element)
@@ -144,10 +152,9 @@ class Hydrodynamics:
         # gz-sim takes xUU for u^2 since 2023; its ancestors took it for |u| u.
         old = "gz::" not in plugin.name
         result = Coefficients(link, element.source, "negated: gz-sim writes derivatives")
-        for (row, dot, column, absolute, second), child in keys:
+        for matrix, row, column, absolute, second, child in keys:
             value, with_abs = child.number(), f"<{child.tag[:2]}abs{child.tag[2:]}>"
-            matrix = "added_mass" if dot else "linear" if second is None else "quadratic"
-            if dot and element.flag("disable_added_mass"):
+            if matrix == "added_mass" and element.flag("disable_added_mass"):
                 self.report.leave_out(f"<{child.tag}> = {value:g}: disable_added_mass is set", child)
             elif matrix != "quadratic" or (second == column and (absolute or old)):
                 result.matrices[matrix][row, column] -= value
@@ -156,17 +163,15 @@ class Hydrodynamics:
                     self.report.note(f"<{child.tag}> is taken as {with_abs}, as this plugin does", child)
             elif value != 0:
                 square = "a coefficient of u^2, which pushes backwards"
-                self.report.leave_out(f"<{child.tag}> = {value:g}: "
-                                      f"{square if second == column else 'a product of two velocities'}; if |u| u is "
-                                      f"meant, write {with_abs}", child)
+                why = square if second == column else "a product of two velocities"
+                self.report.leave_out(f"<{child.tag}> = {value:g}: {why}; if |u| u is meant, write {with_abs}", child)
         if element.flag("disable_coriolis"):
             self.report.note("disable_coriolis: the Coriolis terms of added mass act in the scene", element)
         current = element.numbers("default_current", 3)
         if current is not None:
             self._set_water("current", tuple(current), element.find("default_current"))
-        for child in element.children:
-            if child.tag.startswith("lookup_current"):
-                self.report.leave_out(f"<{child.tag}> {child.text.strip()}: a current from a table", child)
+        tables = dict.fromkeys(c.tag for c in element.children if c.tag.startswith("lookup_current"))
+        self._leave_out(element, tables, "a current from a table")
         self.coefficients.append(result)
         return True
 
@@ -205,29 +210,22 @@ class Hydrodynamics:
         inertial = self.model.links[link].inertial
         if inertial:
             result.rotation = inertial.pose[:3, :3]
-        for (row, dot, column, _, second), child in _coefficients(element):
+        for matrix, row, column, _, second, child in _coefficients(element):
             value = child.number()
-            if row != column or second not in (None, column):
+            if row == column and second in (None, column):
+                result.matrices[matrix][row, row] = value
+                result.read_from(matrix, child)
+            else:
                 self.report.leave_out(f"<{child.tag}> = {value:g}: VRX has no such key", child)
-                continue
-            matrix = "added_mass" if dot else "linear" if second is None else "quadratic"
-            result.matrices[matrix][row, row] = value
-            result.read_from(matrix, child)
         self.coefficients.append(result)
         self._read_water(element, {"waterLevel": "level", "waterDensity": "density"})
-        why = "buoyancy follows from the geometry"
-        self._leave_out(element, _VRX_SHAPE, lambda child, text: f"<{child.tag}> {text}: {why}")
+        self._leave_out(element, _VRX_SHAPE, _GEOMETRY)
         return True
 
     def surface(self, plugin, element):
         """VRX: buoyancy of points of a hull; water level, density and waves are used."""
         self._read_water(element, {"fluid_level": "level", "fluid_density": "density"})
-        self._leave_out(
-            element,
-            _SURFACE_SHAPE,
-            lambda child, text: f"<{child.tag}>{f' = {text}' if text else ''} of '{plugin.name}': "
-            "buoyancy follows from the geometry",
-        )
+        self._leave_out(element, _SURFACE_SHAPE, _GEOMETRY, " = ", f" of '{plugin.name}'")
         self.wavefield(plugin, element)
         return True
 
@@ -254,12 +252,8 @@ class Hydrodynamics:
         axes, model, number = element.numbers("direction", (1, 2), [0.0]), element.text_of("model", "PMS"), int(number)
         direction = math.atan2(axes[1], axes[0]) if len(axes) == 2 else axes[0]
         is_spectrum = model == "PMS"
-        if (
-            model not in ("PMS", "CWR")
-            or number > (3 if is_spectrum else 100)
-            or period < 1e-3
-            or not 0.01 <= scale <= 100
-        ):
+        is_known = model in ("PMS", "CWR") and number <= (3 if is_spectrum else 100)
+        if not is_known or period < 1e-3 or not 0.01 <= scale <= 100:
             self.report.leave_out(f"wavefield: model {model}, {number} waves of {period:g} s", element)
             return
         omega = 2 * math.pi / period
@@ -305,12 +299,11 @@ class Hydrodynamics:
         if volume is not None:
             volume = _of_either(element, "scaling_volume", 1.0) * (volume + _of_either(element, "offset_volume", 0.0))
             if not volume > 0:
-                fail((element.find("volume") or element).where,
+                fail((element.find("volume") or element),
                      f"the plugin declares a volume of {volume:g} m^3 for the link '{link}'", "above 0 m^3",
                      "a mistyped number, or a scaling or offset of another vehicle", "Correct or remove <volume>")
         self.declared.append(Declared(link, element.source, volume, element.numbers("center_of_buoyancy", 3)))
-        why = "stability follows from the geometry"
-        self._leave_out(element, _UUV_SHAPE, lambda child, text: f"<{child.tag}> {text}: {why}")
+        self._leave_out(element, _UUV_SHAPE, "stability follows from the geometry")
 
     def _underwater_model(self, element, link, density):
         model = element.find("hydrodynamic_model")
@@ -319,18 +312,14 @@ class Hydrodynamics:
         kind = model.text_of("type", "fossen")
         changed = "damping negated, y and z reversed (uuv_simulator's axes are forward, right, down)"
         result = Coefficients(link, model.source, changed)
-        added, linear, quadratic, forward = (
-            self._matrix(model, tag, matrix, result)
-            for tag, matrix in (
-                ("added_mass", "added_mass"),
-                ("linear_damping", "linear"),
-                ("quadratic_damping", "quadratic"),
-                ("linear_damping_forward_speed", None),
-            )
-        )
+        added, linear, quadratic, forward = (self._matrix(model, tag, result) for tag in _UUV_MATRICES)
         if kind in _SHAPES:
             result.changed += f"; coefficients of a {kind}, with {density:g} kg/m^3"
-            if not _SHAPES[kind](model, density, added, quadratic):
+            keys, set_matrices = _SHAPES[kind]
+            lengths = [model.number(key, 0.0, minimum=0.0) for key in keys]
+            if all(lengths) and (kind != "cylinder" or model.text_of("axis") in ("i", "j", "k")):
+                set_matrices(model, density, added, quadratic, *lengths)
+            else:
                 self.report.leave_out(f"hydrodynamic model '{kind}': its lengths are not stated", model)
         elif kind != "fossen":
             self.report.leave_out(f"hydrodynamic model '{kind}', which is not known", model)
@@ -356,11 +345,11 @@ class Hydrodynamics:
         self.coefficients.append(result)
 
     @staticmethod
-    def _matrix(model, tag, matrix, result):
+    def _matrix(model, tag, result):
         numbers = model.numbers(tag, (6, 36))
         if numbers is None:
             return np.zeros((6, 6))
-        result.read_from(matrix, model.find(tag))
+        result.read_from(_UUV_MATRICES[tag], model.find(tag))
         return np.diag(numbers) if len(numbers) == 6 else np.reshape(numbers, (6, 6))
 
     def current(self, plugin, element):
@@ -373,18 +362,14 @@ class Hydrodynamics:
         level = speed * math.cos(vertical)
         velocity = (level * math.cos(horizontal), level * math.sin(horizontal), speed * math.sin(vertical))
         self._set_water("current", velocity, constant)
-        self._leave_out(
-            element,
-            ("transient_current", "tidal_oscillation"),
-            lambda child, text: f"<{child.tag}>: the current of a scene is constant",
-        )
+        self._leave_out(element, ("transient_current", "tidal_oscillation"), "the current of a scene is constant")
         if any(constant.number(f"{name}/noiseAmp", 0.0) for name in ("velocity", "horizontal_angle", "vertical_angle")):
             self.report.leave_out("the noise of the current", constant)
         return True
 
 
 def _coefficients(element):
-    """The keys of SNAME's derivatives: ((row, is added mass, column, has abs, second column), element)."""
+    """The keys of SNAME's derivatives: matrix, row, column, whether it has abs, second column, element."""
     result = []
     for child in element.children:
         match = _COEFFICIENT.fullmatch(child.tag.replace("_", "").lower())
@@ -392,7 +377,8 @@ def _coefficients(element):
             force, dot, velocity, absolute, second = match.groups()
             row, column = _FORCES.index(force), _VELOCITIES.index(velocity)
             second = _VELOCITIES.index(second) if second else None
-            result.append(((row, bool(dot), column, bool(absolute), second), child))
+            matrix = "added_mass" if dot else "linear" if second is None else "quadratic"
+            result.append((matrix, row, column, bool(absolute), second, child))
     return result
 
 
@@ -401,45 +387,33 @@ def _of_either(link, key, default):
     return link.number(f"hydrodynamic_model/{key}", link.number(key, default))
 
 
-def _sphere(model, density, added, quadratic):
-    radius = model.number("radius")
-    if radius is None:
-        return False
-    for i in range(3):
-        added[i, i] = 2 / 3 * density * math.pi * radius**3
-        quadratic[i, i] = -0.5 * density * 0.5 * math.pi * radius**2
-    return True
+def _sphere(model, density, added, quadratic, radius):
+    np.fill_diagonal(added[:3, :3], 2 / 3 * density * math.pi * radius**3)
+    np.fill_diagonal(quadratic[:3, :3], -0.5 * density * 0.5 * math.pi * radius**2)
 
 
-def _cylinder(model, density, added, quadratic):
+def _cylinder(model, density, added, quadratic, radius, length):
     """Sets the matrices as uuv_simulator does, whose added mass along the axis is that of a length of 1 m."""
-    radius, length, axis = model.number("radius"), model.number("length"), model.text_of("axis")
-    if not radius or length is None or axis not in ("i", "j", "k"):
-        return False
-    along, across = (
-        next(cd for limit, cd in table if length / (2 * radius) <= limit) for table in (_CD_ALONG, _CD_ACROSS)
-    )
-    section = density * math.pi * radius**2
-    for i in range(3):
-        is_axis = i == "ijk".index(axis)
-        added[i, i] = section if is_axis else section * length
-        quadratic[i, i] = -0.5 * (along * section if is_axis else across * radius * length * density)
-        if not is_axis:
+    slenderness, section = length / (2 * radius), density * math.pi * radius**2
+    along, across = (next(cd for limit, cd in table if slenderness <= limit) for table in (_CD_ALONG, _CD_ACROSS))
+    for i, axis in enumerate("ijk"):
+        if axis == model.text_of("axis"):
+            added[i, i], quadratic[i, i] = section, -0.5 * along * section
+        else:
+            added[i, i], quadratic[i, i] = section * length, -0.5 * across * radius * length * density
             added[3 + i, 3 + i] = section * length**3 / 12
-    return True
 
 
-def _box(model, density, added, quadratic):
-    sides = [model.number(name) for name in ("length", "width", "height")]
-    if None in sides:
-        return False
-    for i in range(3):
-        area = sides[(i + 1) % 3] * sides[(i + 2) % 3]
-        quadratic[i, i] = -0.5 * model.number("cd", 1.0) * area * density
-    return True
+def _box(model, density, added, quadratic, length, width, height):
+    areas = np.array((width * height, length * height, length * width))
+    np.fill_diagonal(quadratic[:3, :3], -0.5 * model.number("cd", 1.0) * areas * density)
 
 
-_SHAPES = {"sphere": _sphere, "cylinder": _cylinder, "box": _box}
+_SHAPES = {  # of uuv_simulator: their lengths, and what sets the matrices
+    "sphere": (("radius",), _sphere),
+    "cylinder": (("radius", "length"), _cylinder),
+    "box": (("length", "width", "height"), _box),
+}
 _KINDS = (("thrust|propeller", "thruster"), ("lift.?drag|fin_", "fin"), ("buoyancy.?engine", "tank"))
 # The first reader that knows a plugin converts it; a reader returns False if the plugin has none of its keys.
 _PLUGINS = (
@@ -455,12 +429,13 @@ _PLUGINS = (
 
 def admissible(matrix, what, source, report, symmetric=False):
     """The matrix, changed where a scene file would refuse it; every change is reported."""
-    result, middle = matrix.copy(), (matrix + matrix.T) / 2
+    largest = abs(matrix).max()
+    result = np.where(abs(matrix) > 1e-12 * largest, matrix, 0.0)  # the rest is rounding of rotations
     if symmetric:
-        worst = abs(matrix - matrix.T).max()
-        if worst > 1e-9 * (abs(matrix).max() or 1.0):
+        worst = abs(result - result.T).max()
+        if worst > 1e-9 * largest:
             report.warn(f"{what} is not symmetric (by up to {worst:.6g}): the mean of both elements is used ({source})")
-        result = middle
+        result = (result + result.T) / 2
     for i in range(6):
         if result[i, i] < 0:
             report.warn(f"{what} has {result[i, i]:.6g} in row {i + 1}, column {i + 1}, which would drive the motion; "
@@ -475,7 +450,7 @@ def admissible(matrix, what, source, report, symmetric=False):
                     f"({source})")
         report.leave_out(f"elements of {what} off the diagonal: {'; '.join(lost)} ({source})")
         result = diagonal
-    return np.where(abs(result) > 1e-12, result, 0.0)
+    return result
 
 
 def _is_semidefinite(matrix):

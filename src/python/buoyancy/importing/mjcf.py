@@ -8,10 +8,9 @@ import math
 import numpy as np
 
 from . import frames
-from .failure import fail, one_of
+from .failure import choose, fail, one_of
 from .model import DEFAULT_DENSITY, Geometry, Inertial, Joint, Link, Model, symmetric
 
-_MAX_INCLUDES = 16
 _JOINTS = ("joint", "freejoint")
 _GENERATED = ("replicate", "attach", "flexcomp", "composite")
 _SIZES = {"box": 3, "sphere": 1, "cylinder": 2, "capsule": 2, "ellipsoid": 3}
@@ -23,7 +22,7 @@ class MjcfReader:
         self.defaults, self.meshes, self.compiler = {"main": {}}, {}, {}
 
     def read(self, root, model_name):
-        self._include(root, 0)
+        self._include(root)
         for element in root.all("compiler"):
             self.compiler.update(element.attributes)
         for element in root.all("default"):
@@ -32,20 +31,16 @@ class MjcfReader:
             for mesh in (self._merged(element, None) for element in asset.all("mesh")):
                 name = mesh.get("name") or mesh.get("file", "").rsplit("/", 1)[-1].rsplit(".", 1)[0]
                 self.meshes[name] = mesh
-        tops = [body for world in root.all("worldbody") for body in self._elements("body", world)]
-        moving = [top for top in tops if top[0].all(*_JOINTS)]
-        chosen = [top for top in tops if top[0].get("name") == model_name] if model_name else (moving or tops)
-        if len(chosen) != 1:
-            names = ", ".join(f"'{top[0].get('name', '')}'" for top in moving or tops) or "none"
-            fail(root.where, f"has {len(chosen)} bodies to choose from ({names})", "one body of <worldbody>",
-                 "a scene of several vehicles, or a misspelt name", "Choose one with --model NAME")
-        body, pose, childclass = chosen[0]
+        bodies = [body for world in root.all("worldbody") for body in self._elements("body", world)]
+        tops = [(body[0].get("name", ""), body) for body in bodies]
+        moving = [top for top in tops if top[1][0].all(*_JOINTS)]
+        body, pose, childclass = choose(root, tops, moving or tops, model_name, "bodies")
         model = Model(body.get("name") or root.get("model") or "vehicle", body, "MJCF")
         self._read_body(body, "", frames.IDENTITY, childclass, model)
         # The frame of the model is that of its first body.
         model.pose = pose @ self._pose(body)
         self._read_options(root, model)
-        for other, _, _ in tops:
+        for other, _, _ in bodies:
             if other is not body:
                 self.report.leave_out(f"body '{other.get('name', '')}' beside the vehicle", other)
         for actuators in root.all("actuator"):
@@ -55,19 +50,14 @@ class MjcfReader:
                                       "of your simulator", actuator)
         return model
 
-    def _include(self, element, depth):
+    def _include(self, element):
         children = []
         for child in element.children:
+            included = child
             if child.tag == "include":
-                if depth >= _MAX_INCLUDES:
-                    fail(child.where, "files include each other too deeply", f"at most {_MAX_INCLUDES} levels",
-                         "a file that includes itself", "Break the cycle")
                 included = self.reader.read(self.search.find(child.get("file", ""), child), child)
-                self._include(included, depth + 1)
-                children += included.children
-            else:
-                self._include(child, depth)
-                children.append(child)
+            self._include(included)
+            children += [child] if included is child else included.children
         element.children = children
 
     def _read_defaults(self, element, inherited, name):
@@ -83,7 +73,7 @@ class MjcfReader:
         """The element with the attributes of its default class, too."""
         name = element.get("class") or childclass or "main"
         if name not in self.defaults:
-            fail(element.where, f"the class '{name}' does not exist", one_of(self.defaults),
+            fail(element, f"the class '{name}' does not exist", one_of(self.defaults),
                  "a misspelt class, or a file that is not included", "Correct it")
         return element.with_attributes({**self.defaults[name].get(element.tag, {}), **element.attributes})
 
@@ -97,7 +87,7 @@ class MjcfReader:
             elif child.tag == "frame":
                 found += self._elements(tag, child, pose @ self._pose(child), inner)
             elif child.tag in _GENERATED:
-                fail(child.where, f"<{child.tag}>", "bodies that are written out", "a model that MuJoCo generates",
+                fail(child, f"<{child.tag}>", "bodies that are written out", "a model that MuJoCo generates",
                      "Save the compiled model (mj_saveLastXML) and import that")
         return found
 
@@ -149,7 +139,7 @@ class MjcfReader:
         elif z:
             rotation = frames.turning_z_to(z)
         if rotation is None:
-            fail(element.where, "a quaternion or an axis of length 0, or two axes along one line", "a rotation",
+            fail(element, "a quaternion or an axis of length 0, or two axes along one line", "a rotation",
                  "numbers that are missing", "Correct it")
         return rotation
 
@@ -176,13 +166,13 @@ class MjcfReader:
             ends = np.reshape(geom.numbers("fromto", 6), (2, 3))
             axis = ends[1] - ends[0]
             if not axis.any():
-                fail(geom.where, f"fromto of '{name}' has two equal points", "two different ends", "a typing error",
+                fail(geom, f"fromto of '{name}' has two equal points", "two different ends", "a typing error",
                      "Correct one of them, or give pos and size")
             result.pose = offset @ frames.pose((ends[0] + ends[1]) / 2, frames.turning_z_to(axis))
             # The size states one radius, or half of one side.
             size = [*(size[:1] * (_SIZES[kind] - 1)), float(np.linalg.norm(axis)) / 2]
         if len(size) < _SIZES[kind]:
-            fail(geom.where, f"size of '{name}' has {len(size)} numbers", f"{_SIZES[kind]} for a {kind}",
+            fail(geom, f"size of '{name}' has {len(size)} numbers", f"{_SIZES[kind]} for a {kind}",
                  "another type, or a default class that is missing", "Correct the geom")
         # MuJoCo's sizes are halves.
         sizes = {"box": tuple(2 * c for c in size[:3]), "sphere": (size[0],), "ellipsoid": tuple(size[:3])}
@@ -192,15 +182,15 @@ class MjcfReader:
     def _read_mesh(self, result):
         geom, name = result.element, result.element.get("mesh", "")
         if name not in self.meshes:
-            fail(geom.where, f"the mesh '{name}' does not exist", one_of(self.meshes), "an asset of another file",
+            fail(geom, f"the mesh '{name}' does not exist", one_of(self.meshes), "an asset of another file",
                  "Add the <mesh> to <asset>")
         mesh = self.meshes[name]
         if "file" not in mesh.attributes:
-            fail(mesh.where, f"the mesh '{name}' has no file", "a mesh in a file", "vertices in the model",
+            fail(mesh, f"the mesh '{name}' has no file", "a mesh in a file", "vertices in the model",
                  "Save the mesh as a file")
         rotation = frames.from_quaternion(mesh.numbers("refquat", 4, [1.0, 0.0, 0.0, 0.0]))
         if rotation is None:
-            fail(mesh.where, "refquat has the length 0", "a rotation", "numbers that are missing", "Correct it")
+            fail(mesh, "refquat has the length 0", "a rotation", "numbers that are missing", "Correct it")
         result.pose = result.pose @ frames.inverse(frames.pose(mesh.numbers("refpos", 3, [0.0] * 3), rotation))
         result.size = tuple(mesh.numbers("scale", 3, [1.0] * 3))
         folder, file = self.compiler.get("meshdir", self.compiler.get("assetdir", "")), mesh.get("file")

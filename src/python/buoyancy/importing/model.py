@@ -111,7 +111,7 @@ class Model(_Written):
 
     def add(self, link):
         if link.name in self.links:
-            fail(link.element.where, f"two of the model are named '{link.name}'", "names that differ",
+            fail(link.element, f"two of the model are named '{link.name}'", "names that differ",
                  "a copied link, or a macro that was used twice", "Rename one")
         self.links[link.name] = link
 
@@ -120,7 +120,7 @@ class Model(_Written):
         joints = {}  # of each child: parent, joint
         for joint in self.joints:
             if joint.parent == joint.child:
-                fail(joint.element.where, f"the joint '{joint.name}' connects '{joint.parent}' with itself",
+                fail(joint.element, f"the joint '{joint.name}' connects '{joint.parent}' with itself",
                      "two different links", "a name that was copied", "Correct its parent or its child")
             if joint.parent in self.links and joint.child in self.links:
                 joints.setdefault(joint.child, {})[joint.parent] = joint
@@ -129,9 +129,8 @@ class Model(_Written):
         except CycleError as error:
             circle = error.args[1]
             joint = joints[circle[1]][circle[0]]
-            fail(joint.element.where, f"the joint '{joint.name}' closes a circle ({' -> '.join(circle)})",
-                 "a tree of links", "a joint whose parent and child are exchanged",
-                 "Correct or remove one of its joints")
+            fail(joint.element, f"the joint '{joint.name}' closes a circle ({' -> '.join(circle)})", "a tree of links",
+                 "a joint whose parent and child are exchanged", "Correct or remove one of its joints")
         result = [(name, [*joints[name].values()]) for name in order if name in joints]
         for child, above in result:
             if len(above) > 1:
@@ -172,5 +171,5 @@ def read_geometry(holder, pose, name, report):
     sizes = [(key, shape.numbers(key)) for key in _SIZES[shape.tag]]
     for key, size in sizes:
         if size is None:
-            fail(shape.where, f"<{shape.tag}> of '{name}' has no {key}", "a complete shape", "a deleted line", "Add it")
+            fail(shape, f"<{shape.tag}> of '{name}' has no {key}", "a complete shape", "a deleted line", "Add it")
     return [Geometry(shape.tag, tuple(number for _, size in sizes for number in size), **common)]

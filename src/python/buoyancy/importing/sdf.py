@@ -8,11 +8,10 @@ import math
 import numpy as np
 
 from . import frames
-from .failure import fail, one_of
+from .failure import choose, fail, one_of
 from .model import Inertial, Joint, Link, Model, Plugin, read_geometry, read_inertial
 from .xml_file import XmlReader
 
-_MAX_INCLUDES = 16
 _MAX_CHAIN = 200  # of frames that are relative to each other
 
 
@@ -27,7 +26,7 @@ class _Scope:
         self.models = {}  # name: a scope
         for child in element.all("link", "frame", "joint"):
             if not child.get("name"):
-                fail(child.where, f"the <{child.tag}> has no name", "an attribute name", "a deleted line", "Name it")
+                fail(child, f"the <{child.tag}> has no name", "an attribute name", "a deleted line", "Name it")
             self.entries.setdefault(child.get("name"), child)
 
     def pose_of(self, name, where, visited=()):
@@ -37,19 +36,15 @@ class _Scope:
         visited = _visited(visited, name, where)
         if name in self.entries:
             return self.read_pose(self.entries[name], self._attached(name), visited)
-        scope, rest = self._nested(name)
-        if scope is None:
-            fail(where.where, f"no frame is named '{name}'", one_of([*self.entries, *self.models]),
-                 "a frame of another model, or a misspelt name", "Correct relative_to or attached_to")
-        outer = scope.model_pose(visited)
-        return outer if rest == "" else outer @ scope.pose_of(rest, where)
+        scope, rest = self._nested(name, where)
+        return scope.model_pose(visited) @ scope.pose_of(rest, where)
 
     def _attached(self, name):
         """The name of the frame that a frame or joint is attached to; of a link it is empty, the model."""
         element = self.entries[name]
         return {"link": "", "joint": element.text_of("child"), "frame": element.get("attached_to", "")}[element.tag]
 
-    def _nested(self, name):
+    def _nested(self, name, where):
         """The scope that a name leads into, and the rest of the name."""
         first, _, rest = name.partition("::")
         if first in self.models and not self.models[first].merged:
@@ -57,7 +52,8 @@ class _Scope:
         for scope in self.models.values():
             if scope.merged and (first in scope.entries or first in scope.models):
                 return scope, name
-        return None, ""
+        return fail(where, f"no link, joint or frame is named '{name}'", one_of([*self.entries, *self.models]),
+                    "one of another model, or a misspelt name", "Correct the name")
 
     def model_pose(self, visited=()):
         """The pose of this model's frame in its parent's, which may place another of its frames."""
@@ -83,10 +79,7 @@ class _Scope:
             return self.link_of(self._attached(name) or "__model__", where, visited)
         if name == "__model__":
             return self.canonical(where)
-        scope, rest = self._nested(name)
-        if scope is None:
-            fail(where.where, f"no link or frame is named '{name}'", one_of(self.entries),
-                 "a misspelt name, or a link of another model", "Correct the joint")
+        scope, rest = self._nested(name, where)
         return scope.link_of(rest or "__model__", where)
 
     def canonical(self, where):
@@ -98,7 +91,7 @@ class _Scope:
                 return self.prefix() + name
         for scope in self.models.values():
             return scope.canonical(where)
-        return fail(where.where, f"the model '{self.name}' has no link", "a model with a link", "an empty model",
+        return fail(where, f"the model '{self.name}' has no link", "a model with a link", "an empty model",
                     "Import another one")
 
     def prefix(self):
@@ -110,10 +103,9 @@ class _Scope:
 def _visited(visited, name, where):
     """The names that lead to a frame, with another one."""
     if name in visited or len(visited) > _MAX_CHAIN:
-        fail(where.where,
-             f"the frame '{name}' is relative to itself, or to more than {_MAX_CHAIN} others "
-             f"({' -> '.join((*visited[-5:], name))})",
-             "frames without a cycle", "a relative_to or attached_to that was mistyped", "Correct it")
+        fail(where, f"the frame '{name}' is relative to itself, or to more than {_MAX_CHAIN} others "
+             f"({' -> '.join((*visited[-5:], name))})", "frames without a cycle",
+             "a relative_to or attached_to that was mistyped", "Correct it")
     return (*visited, name)
 
 
@@ -135,7 +127,7 @@ def _pose(holder):
         return frames.pose(position, frames.from_rpy(*(factor * angle for angle in rotation)))
     turned = frames.from_quaternion((rotation[3], *rotation[:3]))
     if turned is None:
-        fail(element.where, "the quaternion of the pose has the length 0", "x y z and a quaternion x y z w",
+        fail(element, "the quaternion of the pose has the length 0", "x y z and a quaternion x y z w",
              "numbers that are missing", "Correct the pose")
     return frames.pose(position, turned)
 
@@ -154,16 +146,8 @@ class SdfReader:
             name = element.text_of("name") or element.text_of("uri").rstrip("/").split("/")[-1]
             candidates.append((name, element))
         moving = [item for item in candidates if len(candidates) == 1 or not item[1].flag("static")]
-        chosen = [item for item in candidates if item[0] == model_name] if model_name else moving
-        names = ", ".join(f"'{name}'" for name, _ in moving) or "none"
-        if len(chosen) != 1:
-            actual = f"has {len(moving)} models that are not static ({names})"
-            if model_name:
-                actual = f"has {len(chosen)} models of the name '{model_name}' (it has: {names})"
-            fail(root.where, actual, "one model to import", "a world of several models, or a misspelt name",
-                 "Choose one with --model NAME")
-        element = chosen[0][1]
-        scope = self._scope(element, _Scope(holder, ""), 0)
+        element = choose(root, candidates, moving, model_name, "models")
+        scope = self._scope(element, _Scope(holder, ""))
         model = Model(scope.name or "vehicle", element, "SDF", pose=scope.model_pose())
         self._flatten(scope, frames.IDENTITY, model)
         model.canonical = scope.canonical(element)
@@ -175,10 +159,7 @@ class SdfReader:
                 model.gravity, model.gravity_source = gravity.numbers("", 3), gravity.source
         return model
 
-    def _scope(self, element, parent, depth):
-        if depth > _MAX_INCLUDES:
-            fail(element.where, "models are nested, or include each other, too deeply",
-                 f"at most {_MAX_INCLUDES} levels", "a model that includes itself", "Break the cycle")
+    def _scope(self, element, parent):
         include, name = None, ""
         if element.tag == "include":
             include, name = element, element.text_of("name")
@@ -186,7 +167,7 @@ class SdfReader:
         scope = _Scope(element, name or element.get("name", ""), parent, include)
         parent.models[scope.name] = scope
         for child in element.all("model", "include"):
-            self._scope(child, scope, depth + 1)
+            self._scope(child, scope)
         return scope
 
     def _included(self, include):
@@ -195,7 +176,7 @@ class SdfReader:
         root = self.reader.read(model_file(found, include) if found.is_dir() else found, include)
         model = root.find("model")
         if model is None:
-            fail(root.where, "contains no model", "an SDF file with a model", f"'{uri}' names another file",
+            fail(root, "contains no model", "an SDF file with a model", f"'{uri}' names another file",
                  "Correct the uri")
         return model
 
@@ -245,7 +226,8 @@ def model_file(folder, element=None):
     """The newest SDF file that the model.config of a folder names; `element` names the folder."""
     config = folder / "model.config"
     if config.exists():
-        named = [(e.get("version", "0"), e.text.strip()) for e in XmlReader().read(config).all("sdf") if e.text.strip()]
+        versions = XmlReader().read(config, element).all("sdf")
+        named = [(version.get("version", "0"), version.text.strip()) for version in versions if version.text.strip()]
         if named:
             return folder / max(named, key=lambda pair: [int(n) if n.isdecimal() else 0 for n in pair[0].split(".")])[1]
     if (folder / "model.sdf").exists():

@@ -39,16 +39,16 @@ def _place(root, model, report):
         ends = [element.text_of(f"{end}/link") for end in ("parent", "child")]
         for link in ends:
             if link not in model.links:
-                fail(element.where, f"the joint names the link '{link}', which does not exist", one_of(model.links),
+                fail(element, f"the joint names the link '{link}', which does not exist", one_of(model.links),
                      "a link that was renamed, or a macro not expanded", "Correct the joint")
         if ends[1] in children:
-            fail(element.where, f"the link '{ends[1]}' is the child of two joints", "a tree of links",
+            fail(element, f"the link '{ends[1]}' is the child of two joints", "a tree of links",
                  "a joint that was copied", "Remove one of them")
         children[ends[1]] = element
         model.joints.append(Joint(element.get("name", ""), *ends, element.get("type") == "fixed", element))
     roots = [name for name in model.links if name not in children]
     if len(roots) != 1:
-        fail(root.where, f"has {len(roots)} root links ({', '.join(roots) or 'each is the child of a joint'})",
+        fail(root, f"has {len(roots)} root links ({', '.join(roots) or 'each is the child of a joint'})",
              "a tree of links with one root", "a joint that is missing, or a cycle", "Connect the links by joints")
     model.canonical = roots[0]
     for name, (joint,) in model.links_below_joints(report):

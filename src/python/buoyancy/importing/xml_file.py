@@ -1,7 +1,7 @@
 """Reads XML files into elements that know their line, within limits, and without entities or document types.
 
 An entity can make a short file long or name another file, and no format that is read here needs any. So expat is
-given handlers that refuse them, which is what defusedxml does too; that one keeps no line numbers.
+given a handler that refuses what declares them, as defusedxml does too; that one keeps no line numbers.
 """
 import copy
 import math
@@ -38,6 +38,10 @@ class Element:
     def source(self):
         """The place in a comment: the name of the file alone."""
         return f"{Path(self.file).name}:{self.line}"
+
+    @property
+    def depth(self):
+        return self.parent.depth + 1 if self.parent else 0
 
     def get(self, name, default=None):
         return self.attributes.get(name, default)
@@ -86,15 +90,16 @@ class Element:
         except ValueError:
             values = None
         if values is None or not all(abs(value) <= _MAX_NUMBER for value in values):
-            fail(element.where, f"{what} is '{_short(' '.join(words))}'",
+            found = " ".join(words)
+            fail(element, f"{what} is '{found if len(found) <= 60 else found[:57] + '...'}'",
                  f"finite numbers up to {_MAX_NUMBER:g} separated by spaces",
                  "a template that was not expanded, or a misspelt number", "Write the numbers out")
         allowed = (count,) if isinstance(count, int) else count
         if allowed and len(values) not in allowed:
-            fail(element.where, f"{what} has {len(values)} numbers", " or ".join(map(str, allowed)),
+            fail(element, f"{what} has {len(values)} numbers", " or ".join(map(str, allowed)),
                  "numbers that are missing or too many", "Correct the model")
         if any(value < minimum for value in values):
-            fail(element.where, f"{what} is {', '.join(f'{value:g}' for value in values)}", f"at least {minimum:g}",
+            fail(element, f"{what} is {', '.join(f'{value:g}' for value in values)}", f"at least {minimum:g}",
                  "a mistyped sign", "Correct the model")
         return values
 
@@ -109,10 +114,6 @@ class Element:
         return result
 
 
-def _short(text):
-    return text if len(text) <= 60 else text[:57] + "..."
-
-
 class XmlReader:
     """Reads files; the limits are for all of them together."""
 
@@ -120,7 +121,7 @@ class XmlReader:
         self.bytes = self.elements = 0
 
     def read(self, path, element=None):
-        """The root element of a file, which `element` of another one names."""
+        """The root element of a file. `element` of another one names it, and counts as what contains it."""
         path = Path(path)
         where = f"{element.where}: {path}" if element else path
         try:
@@ -134,26 +135,23 @@ class XmlReader:
         if self.bytes > MAX_BYTES:
             fail(where, f"more than {MAX_BYTES // 2 ** 20} MiB of XML", "a model of at most this size",
                  "data in the model, or files that include each other", "Keep data in files of their own")
-        return self._parse(data, path)
+        return self._parse(data, path, element)
 
-    def _parse(self, data, path):
+    def _parse(self, data, path, parent):
         parser = xml.parsers.expat.ParserCreate()
         parser.buffer_text = True
-        root, stack = [], []
-
-        def refuse(kind):
-            fail(f"{path}:{parser.CurrentLineNumber}", f"has {kind}", "XML without entities and document types",
-                 "a file that was made to exhaust memory or to read other files", "Remove the <!DOCTYPE ...>")
+        depth, root, stack = parent.depth + 1 if parent else 0, [], []
 
         def start(tag, attributes):
             self.elements += 1
-            if len(stack) >= MAX_DEPTH or self.elements > MAX_ELEMENTS:
-                fail(f"{path}:{parser.CurrentLineNumber}", "too many elements",
+            if depth + len(stack) >= MAX_DEPTH or self.elements > MAX_ELEMENTS:
+                fail(f"{path}:{parser.CurrentLineNumber}", "elements are nested too deeply, or are too many",
                      f"at most {MAX_ELEMENTS:,}, nested at most {MAX_DEPTH} deep",
-                     "a file that was made to exhaust " "memory", "Use a smaller model")
-            parent = stack[-1][0] if stack else None
-            element = Element(tag, attributes, parent, str(path), parser.CurrentLineNumber)
-            (parent.children if parent else root).append(element)
+                     "a model that includes itself, or a file that was made to exhaust memory",
+                     "Break the cycle, or use a smaller model")
+            outer = stack[-1][0] if stack else parent
+            element = Element(tag, attributes, outer, str(path), parser.CurrentLineNumber)
+            (outer.children if stack else root).append(element)
             stack.append((element, []))
 
         def end(tag):
@@ -165,15 +163,16 @@ class XmlReader:
                 stack[-1][1].append(text)
 
         def doctype(name, system_id, public_id, has_internal_subset):
+            # Entities are declared in one of these.
             if system_id or public_id or has_internal_subset:
-                refuse("a document type")
+                fail(f"{path}:{parser.CurrentLineNumber}", "has a document type",
+                     "XML without entities and document types",
+                     "a file that was made to exhaust memory or to read other files", "Remove the <!DOCTYPE ...>")
 
         parser.StartElementHandler = start
         parser.EndElementHandler = end
         parser.CharacterDataHandler = characters
         parser.StartDoctypeDeclHandler = doctype
-        parser.EntityDeclHandler = lambda *arguments: refuse("an entity")
-        parser.ExternalEntityRefHandler = lambda *arguments: refuse("an external entity")
         try:
             parser.Parse(data, True)
         except xml.parsers.expat.ExpatError as error:
