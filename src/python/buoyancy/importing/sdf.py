@@ -44,13 +44,18 @@ class _Scope:
         element = self.entries[name]
         return {"link": "", "joint": element.text_of("child"), "frame": element.get("attached_to", "")}[element.tag]
 
+    def has(self, name):
+        """Whether a name is one of this model, or of the models that are merged into it."""
+        merged = (scope for scope in self.models.values() if scope.merged)
+        return name in self.entries or name in self.models or any(scope.has(name) for scope in merged)
+
     def _nested(self, name, where):
         """The scope that a name leads into, and the rest of the name."""
         first, _, rest = name.partition("::")
         if first in self.models and not self.models[first].merged:
             return self.models[first], rest
         for scope in self.models.values():
-            if scope.merged and (first in scope.entries or first in scope.models):
+            if scope.merged and scope.has(first):
                 return scope, name
         return fail(where, f"no link, joint or frame is named '{name}'", one_of([*self.entries, *self.models]),
                     "one of another model, or a misspelt name", "Correct the name")
