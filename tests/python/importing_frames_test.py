@@ -12,94 +12,71 @@ def pose(text, **attributes):
     return f"<pose{names}>{text}</pose>"
 
 
+def placed(text, **attributes):
+    """A link whose box has this pose."""
+    return link(inside=box(pose=pose(text, **attributes)) + inertial())
+
+
+def included(name, merge="", inside=""):
+    return f"<include {merge}>{inside}<uri>model://{name}</uri>{pose('0 1 0 0 0 0')}</include>"
+
+
+QUARTER = [HALF, 0, 0, HALF]  # a quarter turn about z
+MOUNT = "<frame name='mount'>" + pose("5 0 0 0 0 90", degrees="true") + "</frame>"
+HAND = link("hand", inertial(1) + box("palm"), pose("0 0 1 0 0 0"))
+MERGED = "merge='true'"
+OLD_ARM = link("arm", inertial(1) + box("arm box"), pose("0 0 2 0 0 0", frame="base"))
+NESTED = f"<model name='arm'>{pose('1 0 0 0 0 90', degrees='true')}{HAND.replace('0 0 1 0', '0 2 0 0')}</model>"
+
+
 class ImportsFramesOfSdf(ImportTestCase):
-    def position(self, inside, **arguments):
-        return self.import_model(sdf(inside, **arguments)).body["part"][0].get("position", [0, 0, 0])
-
-    def test_pose_of_collision_is_in_its_link(self):
-        result = self.import_model(
-            sdf(link(inside=box(pose=pose("1 2 3 0 0 1.5707963267948966")) + inertial(), pose=pose("9 9 9 0 0 0")))
-        )
-        part = result.body["part"][0]
-        self.assert_numbers(part["position"], [1, 2, 3])
-        self.assert_numbers(part["orientation"], [HALF, 0, 0, HALF])
-        self.assert_numbers(result.body["client"]["position"], [9, 9, 9])
-
-    def test_rpy_turns_about_fixed_axes(self):
+    # What is in the model; position and orientation of its last part.
+    POSES = {
+        "pose of collision is in its link": (placed("1 2 3 0 0 1.5707963267948966"), [1, 2, 3], QUARTER),
         # x to -z by pitch, then to -z by yaw: roll, pitch, yaw = 0, 90, 90 degrees is q_z q_y.
-        result = self.import_model(sdf(link(inside=box(pose=pose("0 0 0 0 90 90", degrees="true")) + inertial())))
-        self.assert_numbers(result.body["part"][0]["orientation"], [0.5, -0.5, 0.5, 0.5])
-
-    def test_quaternion_has_w_last(self):
-        result = self.import_model(
-            sdf(link(inside=box(pose=pose("0 0 0 1 0 0 1", rotation_format="quat_xyzw")) + inertial()))
-        )
-        self.assert_numbers(result.body["part"][0]["orientation"], [HALF, HALF, 0, 0])
-
-    def test_relative_to_follows_frames(self):
+        "rpy turns about fixed axes": (placed("0 0 0 0 90 90", degrees="true"), [0, 0, 0], [0.5, -0.5, 0.5, 0.5]),
+        "quaternion has w last": (placed("0 0 0 1 0 0 1", rotation_format="quat_xyzw"), [0, 0, 0], [HALF, HALF, 0, 0]),
         # The mount is at x = 5, turned by 90 degrees: its (1, 0, 0) is the model's (5, 1, 0).
-        frame = "<frame name='mount'>" + pose("5 0 0 0 0 90", degrees="true") + "</frame>"
-        inside = frame + link(inside=box(pose=pose("1 0 0 0 0 0", relative_to="mount")) + inertial())
-        self.assert_numbers(self.position(inside), [5, 1, 0])
+        "relative_to follows frames": (MOUNT + placed("1 0 0 0 0 0", relative_to="mount"), [5, 1, 0], QUARTER),
+        "relative_to model undoes pose of link": (
+            placed("1 0 0 0 0 0", relative_to="__model__").replace("'base'>", "'base'>" + pose("3 0 0 0 0 0")),
+            [-2, 0, 0],
+            None,
+        ),
+        "frame is attached to link": (
+            "<frame name='mount' attached_to='base'>" + pose("0 0 1 0 0 0") + "</frame>"
+            + placed("0 1 0 0 0 0", relative_to="mount").replace("'base'>", "'base'>" + pose("7 0 0 0 0 0")),
+            [0, 1, 1],
+            None,
+        ),
+        "old files say frame": (link(pose=pose("0 4 0 0 0 0")) + OLD_ARM + fixed("base", "arm"), [0, 0, 2], None),
+        "nested models compose": (link() + NESTED + fixed("base", "arm::hand"), [-1, 0, 0], QUARTER),
+        "include is a nested model": (
+            link() + included("arm", inside="<name>left</name>") + fixed("base", "left::hand"),
+            [0, 1, 1],
+            None,
+        ),
+        "merged include keeps names": (link() + included("arm", MERGED) + fixed("base", "hand"), [0, 1, 1], None),
+        "so does one within another": (link() + included("body", MERGED) + fixed("base", "hand"), [0, 2, 1], None),
+    }
 
-    def test_relative_to_model_undoes_pose_of_link(self):
-        inside = link(
-            inside=box(pose=pose("1 0 0 0 0 0", relative_to="__model__")) + inertial(), pose=pose("3 0 0 0 0 0")
-        )
-        self.assert_numbers(self.position(inside), [-2, 0, 0])
-
-    def test_frame_is_attached_to_link(self):
-        frame = "<frame name='mount' attached_to='base'>" + pose("0 0 1 0 0 0") + "</frame>"
-        inside = frame + link(
-            inside=box(pose=pose("0 1 0 0 0 0", relative_to="mount")) + inertial(), pose=pose("7 0 0 0 0 0")
-        )
-        self.assert_numbers(self.position(inside), [0, 1, 1])
-
-    def test_old_files_say_frame(self):
-        inside = link() + link("arm", inertial(1) + box("arm box"), pose("0 0 2 0 0 0", frame="base"))
-        inside = inside.replace("<link name='base'>", "<link name='base'>" + pose("0 4 0 0 0 0"))
-        result = self.import_model(sdf(inside + fixed("base", "arm"), version="1.6"))
-        self.assert_numbers(result.body["part"][1]["position"], [0, 0, 2])
-
-    def test_nested_models_compose(self):
-        inner = (
-            f"<model name='arm'>{pose('1 0 0 0 0 90', degrees='true')}"
-            f"{link('hand', inertial(1) + box('palm'), pose('0 2 0 0 0 0'))}</model>"
-        )
-        joint = fixed("base", "arm::hand")
-        part = self.import_model(sdf(link() + inner + joint)).body["part"][1]
-        self.assert_numbers(part["position"], [-1, 0, 0])
-        self.assert_numbers(part["orientation"], [HALF, 0, 0, HALF])
-
-    def test_placement_frame_is_what_pose_places(self):
-        inside = link(pose=pose("0 0 3 0 0 0"))
-        result = self.import_model(sdf(inside, pose=pose("10 0 0 0 0 0"), attributes="placement_frame='base'"))
-        self.assert_numbers(result.body["client"]["position"], [10, 0, 0])
-
-    def test_include_is_a_nested_model(self):
+    def test_poses(self):
         files = {
             "models/arm/model.config": "<model><sdf version='1.9'>arm.sdf</sdf></model>",
-            "models/arm/arm.sdf": sdf(link("hand", inertial(1) + box("palm"))),
+            "models/arm/arm.sdf": sdf(HAND),
+            "body/model.sdf": sdf(included("arm", MERGED)),
         }
-        include = "<include><name>left</name><uri>model://arm</uri>" + pose("0 1 0 0 0 0") + "</include>"
-        part = self.import_model(sdf(link() + include + fixed("base", "left::hand")), files=files).body["part"][1]
-        self.assert_numbers(part["position"], [0, 1, 0])
+        for name, (inside, position, orientation) in self.POSES.items():
+            with self.subTest(name):
+                text = sdf(inside, version="1.6" if "old" in name else "1.9")
+                part = self.import_model(text, files=files).body["part"][-1]
+                self.assert_numbers(part.get("position", [0, 0, 0]), position)
+                self.assert_numbers(part.get("orientation", [1, 0, 0, 0]), orientation or [1, 0, 0, 0])
 
-    def test_merged_include_keeps_names(self):
-        files = {"arm/model.sdf": sdf(link("hand", inertial(1) + box("palm"), pose("0 0 1 0 0 0")))}
-        include = "<include merge='true'><uri>model://arm</uri>" + pose("0 1 0 0 0 0") + "</include>"
-        part = self.import_model(sdf(link() + include + fixed("base", "hand")), files=files).body["part"][1]
-        self.assert_numbers(part["position"], [0, 1, 1])
-
-    def test_merged_include_within_another_keeps_names(self):
-        include = "<include merge='true'><uri>model://{}</uri>" + pose("0 1 0 0 0 0") + "</include>"
-        files = {
-            "hand/model.sdf": sdf(link("hand", inertial(1) + box("palm"), pose("0 0 1 0 0 0"))),
-            "arm/model.sdf": sdf(include.format("hand")),
-        }
-        model = sdf(link() + include.format("arm") + fixed("base", "hand"))
-        part = self.import_model(model, files=files).body["part"][1]
-        self.assert_numbers(part["position"], [0, 2, 1])
+    def test_pose_of_link_and_model_is_that_of_client(self):
+        for attributes, expected in (("", [10, 0, 3]), ("placement_frame='base'", [10, 0, 0])):
+            text = sdf(link(pose=pose("0 0 3 0 0 0")), pose=pose("10 0 0 0 0 0"), attributes=attributes)
+            self.assert_numbers(self.import_model(text).body["client"]["position"], expected)
 
     def test_cycles_and_unknown_frames_are_refused(self):
         cycle = (
@@ -135,17 +112,14 @@ class SumsMassesOfLinks(ImportTestCase):
         self.assert_numbers(client["inertia"], [2, 8, 8])
 
     def test_inertia_is_turned_by_pose_of_inertial(self):
-        client = self.client(sdf(link(inside=box() + inertial(5, pose("0 0 1 0 0 90", degrees="true"), (2, 3, 4)))))
-        self.assert_numbers(client["center_of_mass"], [0, 0, 1])
-        self.assert_numbers(client["inertia"], [3, 2, 4])
-
-    def test_inertia_at_45_degrees_gets_products(self):
-        client = self.client(sdf(link(inside=box() + inertial(5, pose("0 0 0 0 0 45", degrees="true"), (2, 3, 4)))))
-        self.assert_numbers(client["inertia"], [2.5, 2.5, 4, -0.5, 0, 0])
-
-    def test_order_of_products(self):
-        client = self.client(sdf(link(inside=box() + inertial(5, "", (20, 30, 40), (1, 2, 3)))))
-        self.assert_numbers(client["inertia"], [20, 30, 40, 1, 2, 3])
+        for placed_at, moments, products, center, expected in (
+            (pose("0 0 1 0 0 90", degrees="true"), (2, 3, 4), (0, 0, 0), [0, 0, 1], [3, 2, 4]),
+            (pose("0 0 0 0 0 45", degrees="true"), (2, 3, 4), (0, 0, 0), [0, 0, 0], [2.5, 2.5, 4, -0.5, 0, 0]),
+            ("", (20, 30, 40), (1, 2, 3), [0, 0, 0], [20, 30, 40, 1, 2, 3]),
+        ):
+            client = self.client(sdf(link(inside=box() + inertial(5, placed_at, moments, products))))
+            self.assert_numbers(client["center_of_mass"], center)
+            self.assert_numbers(client["inertia"], expected)
 
     def test_order_of_urdf(self):
         urdf = """<robot name='boat'><link name='base'><inertial><origin xyz='0 0 1' rpy='0 0 1.5707963267948966'/>
@@ -267,12 +241,6 @@ class ImportsUrdf(ImportTestCase):
         result = self.import_model(urdf, name="boat.urdf")
         self.assert_numbers(result.body["part"][0]["position"], [0, 3, 0])
         self.assertEqual(result.body["client"]["mass"], 10)
-
-    def test_broken_trees_are_refused(self):
-        two = "<robot name='r'><link name='a'/><link name='b'/></robot>"
-        self.assert_refused(two, "2 root links (a, b)", name="two.urdf")
-        joint = "<joint name='j' type='fixed'><parent link='a'/><child link='c'/></joint>"
-        self.assert_refused(two.replace("</robot>", joint + "</robot>"), "'c', which does not exist", name="c.urdf")
 
 
 class ImportsMjcf(ImportTestCase):

@@ -28,17 +28,67 @@ def element(i, j, matrix):
     return matrix[6 * i + j]
 
 
+SECTION = 1000 * math.pi / 4  # of cylinders and spheres of 1 m, with the density of water
+# Plugins, and the tables that they become.
+COEFFICIENTS = {
+    "gz-sim is negated": (
+        plugin(GZ, xU=-4, yV=-6, xUabsU=-18, nRabsR=-2, xDotU=-5.5, nDotR=-0.5),
+        {"linear": [4, 6, 0, 0, 0, 0], "quadratic": [18, 0, 0, 0, 0, 2], "center": [0, 0, 0], "immersion": "volume"},
+        {"matrix": [5.5, 0, 0, 0, 0, 0.5], "center": [0, 0, 0], "immersion": "volume"},
+    ),
+    "both spellings are read": (
+        plugin(GZ, x_u=-4, x_u_abs_u=-18, x_dot_u=-5),
+        {"linear": [4, 0, 0, 0, 0, 0], "quadratic": [18, 0, 0, 0, 0, 0]},
+        {"matrix": [5, 0, 0, 0, 0, 0]},
+    ),
+    "VRX keeps signs and has defaults": (
+        plugin(VRX, xU=95, xUU=150, yV=105, nDotR=40),
+        {"linear": [95, 105, 20, 20, 20, 20], "quadratic": [150, 0, 0, 0, 0, 0], "immersion": "none"},
+        {"matrix": [5, 5, 0.1, 0.1, 0.1, 40]},
+    ),
+    "fossen has scaling and offsets": (
+        uuv(
+            "<type>fossen</type><added_mass>1 2 3 4 5 6</added_mass><linear_damping>-1 -2 -3 -4 -5 -6</linear_damping>"
+            "<quadratic_damping>-1 -1 -1 -1 -1 -1</quadratic_damping><scaling_added_mass>2</scaling_added_mass>"
+            "<offset_added_mass>1</offset_added_mass><scaling_damping>3</scaling_damping>"
+            "<offset_linear_damping>-1</offset_linear_damping><offset_nonlin_damping>0.5</offset_nonlin_damping>"
+        ),
+        {"linear": [6, 9, 12, 15, 18, 21], "quadratic": [1.5] * 6},
+        {"matrix": [4, 6, 8, 10, 12, 14]},
+    ),
+    "sphere": (
+        uuv("<type>sphere</type><radius>0.5</radius>"),
+        {"quadratic": [0.5 * 0.5 * SECTION] * 3 + [0] * 3},
+        {"matrix": [1000 * 2 / 3 * math.pi / 8] * 3 + [0] * 3},
+    ),
+    "cylinder": (
+        uuv("<type>cylinder</type><radius>0.5</radius><length>3</length><axis>i</axis>"),
+        {"quadratic": [0.5 * 0.87 * SECTION, 0.5 * 0.74 * 1500, 0.5 * 0.74 * 1500, 0, 0, 0]},
+        {"matrix": [SECTION, 3 * SECTION, 3 * SECTION, 0, SECTION * 27 / 12, SECTION * 27 / 12]},
+    ),
+    "box": (
+        uuv("<type>box</type><cd>2</cd><length>4</length><width>2</width><height>1</height>"),
+        {"quadratic": [2000, 4000, 8000, 0, 0, 0]},
+        {},
+    ),
+}
+
+
 class ConvertsHydrodynamics(ImportTestCase):
     def loads(self, plugin_text, inside=None):
         return self.import_model(sdf((inside or link()) + plugin_text))
 
-    def test_gz_sim_is_negated(self):
-        body = self.loads(plugin(GZ, xU=-4, yV=-6, xUabsU=-18, nRabsR=-2, xDotU=-5.5, nDotR=-0.5)).body
-        self.assertEqual(body["drag"]["linear"], [4, 6, 0, 0, 0, 0])
-        self.assertEqual(body["drag"]["quadratic"], [18, 0, 0, 0, 0, 2])
-        self.assertEqual(body["added_mass"]["matrix"], [5.5, 0, 0, 0, 0, 0.5])
-        self.assertEqual(body["drag"]["center"], [0, 0, 0])
-        self.assertEqual(body["outputs"], ["wrench", "loads"])
+    def test_coefficients(self):
+        for name, (text, *expected) in COEFFICIENTS.items():
+            body = self.loads(text).body
+            self.assertEqual(body["outputs"], ["wrench", "loads"])
+            for table, values in zip(("drag", "added_mass"), expected):
+                for key, value in values.items():
+                    with self.subTest(name, key=key):
+                        if key == "immersion":
+                            self.assertEqual(body[table][key], value)
+                        else:
+                            self.assert_numbers(body[table][key], value)
 
     def test_gz_sim_cross_terms_have_row_and_column(self):
         body = self.loads(
@@ -50,12 +100,6 @@ class ConvertsHydrodynamics(ImportTestCase):
         self.assertEqual((element(1, 5, linear), element(5, 1, linear)), (-1, -0.5))
         self.assertEqual((element(1, 5, quadratic), element(5, 1, quadratic)), (0.5, 0))
         self.assertEqual((element(1, 5, added), element(5, 1, added), element(5, 5, added)), (-2, -2, 8))
-
-    def test_both_spellings_are_read(self):
-        body = self.loads(plugin(GZ, x_u=-4, x_u_abs_u=-18, x_dot_u=-5)).body
-        self.assertEqual(body["drag"]["linear"][0], 4)
-        self.assertEqual(body["drag"]["quadratic"][0], 18)
-        self.assertEqual(body["added_mass"]["matrix"][0], 5)
 
     def test_square_without_sign_has_no_counterpart(self):
         result = self.loads(plugin(GZ, xU=-4, xUU=-18, yVabsR=-3))
@@ -83,13 +127,6 @@ class ConvertsHydrodynamics(ImportTestCase):
         result = self.loads(plugin(GZ, yV=-1, nR=-1, yR=-5, nV=-5))
         self.assertEqual(result.body["drag"]["linear"], [0, 1, 0, 0, 0, 1])
         self.assertIn("row 2, column 6: 5; row 6, column 2: 5", result.text)
-
-    def test_vrx_keeps_signs_and_has_defaults(self):
-        body = self.loads(plugin(VRX, xU=95, xUU=150, yV=105, nDotR=40)).body
-        self.assertEqual(body["drag"]["linear"], [95, 105, 20, 20, 20, 20])
-        self.assertEqual(body["drag"]["quadratic"], [150, 0, 0, 0, 0, 0])
-        self.assertEqual(body["added_mass"]["matrix"], [5, 5, 0.1, 0.1, 0.1, 40])
-        self.assertEqual(body["drag"]["immersion"], "none")
 
     def test_usv_plugin_of_gazebo_classic(self):
         text = (
@@ -120,18 +157,6 @@ class ConvertsHydrodynamics(ImportTestCase):
         self.assertEqual(body["drag"]["linear"], [4, 6, 5, 1, 2, 3])
         self.assertEqual(body["drag"]["quadratic"], [18, 21, 37, 1, 1, 1])
 
-    def test_fossen_scaling_and_offsets(self):
-        model = (
-            "<type>fossen</type><added_mass>1 2 3 4 5 6</added_mass><linear_damping>-1 -2 -3 -4 -5 -6</linear_damping>"
-            "<quadratic_damping>-1 -1 -1 -1 -1 -1</quadratic_damping><scaling_added_mass>2</scaling_added_mass>"
-            "<offset_added_mass>1</offset_added_mass><scaling_damping>3</scaling_damping>"
-            "<offset_linear_damping>-1</offset_linear_damping><offset_nonlin_damping>0.5</offset_nonlin_damping>"
-        )
-        body = self.loads(uuv(model)).body
-        self.assertEqual(body["added_mass"]["matrix"], [4, 6, 8, 10, 12, 14])
-        self.assertEqual(body["drag"]["linear"], [6, 9, 12, 15, 18, 21])
-        self.assertEqual(body["drag"]["quadratic"], [1.5] * 6)
-
     def test_forward_speed_is_reported(self):
         result = self.loads(
             uuv(
@@ -140,22 +165,6 @@ class ConvertsHydrodynamics(ImportTestCase):
             )
         )
         self.assertIn("linear_damping_forward_speed 0 0 0 0 0 -7", result.output)
-
-    def test_shapes_of_uuv_simulator(self):
-        sphere = self.loads(uuv("<type>sphere</type><radius>0.5</radius>")).body
-        self.assert_numbers(sphere["added_mass"]["matrix"], [1000 * 2 / 3 * math.pi / 8] * 3 + [0] * 3)
-        self.assert_numbers(sphere["drag"]["quadratic"], [0.5 * 1000 * 0.5 * math.pi / 4] * 3 + [0] * 3)
-        cylinder = self.loads(uuv("<type>cylinder</type><radius>0.5</radius><length>3</length><axis>i</axis>")).body
-        section = 1000 * math.pi / 4
-        self.assert_numbers(
-            cylinder["added_mass"]["matrix"],
-            [section, 3 * section, 3 * section, 0, section * 27 / 12, section * 27 / 12],
-        )
-        self.assert_numbers(
-            cylinder["drag"]["quadratic"], [0.5 * 0.87 * section, 0.5 * 0.74 * 1500, 0.5 * 0.74 * 1500, 0, 0, 0]
-        )
-        body = self.loads(uuv("<type>box</type><cd>2</cd><length>4</length><width>2</width><height>1</height>")).body
-        self.assert_numbers(body["drag"]["quadratic"], [2000, 4000, 8000, 0, 0, 0])
 
     def test_declared_buoyancy_is_compared(self):
         inside = "<volume>1.1</volume><center_of_buoyancy>0 0 0.1</center_of_buoyancy>"

@@ -1,5 +1,6 @@
 """Meshes, shapes, hostile and broken models, and the program itself."""
 import os
+import re
 import subprocess
 import sys
 import unittest
@@ -75,21 +76,32 @@ class ImportsGeometry(ImportTestCase):
             name="third.sdf",
         )
 
+    SHAPES = {
+        "<sphere><radius>0.5</radius></sphere>": np.pi / 6,
+        "<cylinder><radius>0.5</radius><length>2</length></cylinder>": np.pi / 2,
+        "<capsule><radius>0.5</radius><length>2</length></capsule>": np.pi / 2 + np.pi / 6,
+        "<ellipsoid><radii>1 0.5 0.25</radii></ellipsoid>": np.pi / 6,
+        "<cone><radius>0.5</radius><length>2</length></cone>": np.pi / 6,
+    }
+
     def test_shapes(self):
-        shapes = (
-            ("<sphere><radius>0.5</radius></sphere>", np.pi / 6),
-            ("<cylinder><radius>0.5</radius><length>2</length></cylinder>", np.pi / 2),
-            ("<capsule><radius>0.5</radius><length>2</length></capsule>", np.pi / 2 + np.pi / 6),
-            ("<ellipsoid><radii>1 0.5 0.25</radii></ellipsoid>", np.pi / 6),
-            ("<cone><radius>0.5</radius><length>2</length></cone>", np.pi / 6),
-        )
-        for shape, volume in shapes:
+        for shape, volume in self.SHAPES.items():
             inside = f"<collision name='c'><geometry>{shape}</geometry></collision>" + inertial()
             scene = self.import_model(sdf(link(inside=inside), version="1.12")).open()
             self.assertAlmostEqual(scene.bodies[0].volume / volume, 1, delta=1.2e-3)
             wrench = scene.query(1, [0, 0, -9], [1, 0, 0, 0])
             expected = [0, 0, -0.5] if "cone" in shape else [0, 0, 0]
             np.testing.assert_allclose(wrench.center_of_buoyancy, expected, atol=1e-9)
+
+    def test_shape_overlaps_box_by_its_upper_half(self):
+        # Both are turned by 1 rad about x, and the box begins at the middle of the shape.
+        above = box("b", "4 4 4", f"<pose>9 {-2 * np.sin(1)} {2 * np.cos(1)} 1 0 0</pose>")
+        for shape, volume in self.SHAPES.items():
+            turned = f"<collision name='c'><pose>9 0 0 1 0 0</pose><geometry>{shape}</geometry></collision>"
+            output = self.import_model(sdf(link(inside=above + turned + inertial()), version="1.12")).output
+            found = re.search(r"'b' and 'c' by ([0-9.]+) m\^3", output)
+            expected = volume / (8 if "cone" in shape else 2)
+            self.assertAlmostEqual(float(found.group(1)) / expected, 1, delta=0.03)
 
     def test_overlapping_boxes_count_twice(self):
         inside = box("a", "2 1 1") + box("b", "2 1 1", "<pose>1.5 0 0 0 0 0</pose>") + inertial()
@@ -128,7 +140,83 @@ class ImportsGeometry(ImportTestCase):
         np.testing.assert_allclose(wrench.torque, 0, atol=1e-9)
 
 
+def hull(size="1 1 1", **attributes):
+    """A box in MJCF."""
+    return "<geom type='box' size='{}' {}/>".format(size, " ".join(f"{k}='{v}'" for k, v in attributes.items()))
+
+
+INCLUDE = "<include><uri>model://arm</uri></include>"
+AB = "<link name='a'/><link name='b'/>"
+WAVE = "<plugin filename='libSurface.so' name='vrx::Surface'><wavefield><wave>{}</wave></wavefield></plugin>"
+# Files, and words of the errors; for an SDF model also words of its path.
+REFUSED = {
+    "model.sdf": (
+        ("hello", "is not XML"),
+        ("<html/>", "root element is <html>"),
+        ("<sdf version='1.9'><model name='a'>", "is not XML"),
+        (sdf(box()), "/sdf/model[vehicle]: the model 'vehicle' has no link"),
+        (sdf(link(inside=box(size="1 1") + inertial())), "size [1.0, 1.0]", "3 lengths", "/collision[box]: "),
+        (sdf(link(inside=box(size="1 nan 1") + inertial())), "'1 nan 1'", "finite numbers", "/geometry/box/size: "),
+        (sdf(link(inside=box(size="1 1 -1") + inertial())), "lengths above 0", "/link[base]/collision[box]: "),
+        (sdf(link(inside=box(size="") + inertial())), "<box> of 'box' has no size", "/collision[box]/geometry/box: "),
+        (sdf(link(pose="<pose>0 0 ${z}</pose>")), "template that was not expanded", "/link[base]/pose: "),
+        (sdf(link(pose="<pose rotation_format='quat_xyzw'>1 2 3 0 0 0 0</pose>")), "length 0", "/link[base]/pose: "),
+        (sdf(link(inside=box() + inertial("1e13"))), "<mass> is '1e13'", "up to 1e+12", "/inertial/mass: "),
+        (sdf(link(inside=mesh("a" * 5000))), "is not found", "/collision[hull]: "),
+        (sdf(link() + "<frame><pose/></frame>"), "the <frame> has no name", "/sdf/model[vehicle]/frame: "),
+        (sdf(link() + fixed("base", "mast")), "no link, joint or frame is named 'mast'", "/joint[base to mast]: "),
+        (sdf(link() + fixed("base", "base")), "connects 'base' with itself", "/joint[base to base]: "),
+        (
+            sdf(link() + link("mast") + fixed("base", "mast") + fixed("mast", "base", "revolute")),
+            "closes a circle (",
+            "/sdf/model[vehicle]/joint[",
+        ),
+        (sdf(link() + WAVE.format("<direction>north</direction>")), "<direction> is 'north'", "/wave/direction: "),
+        (
+            sdf(link() + WAVE.format("<model>CWR</model><amplitude>1e6</amplitude>")),
+            "model[vehicle]: the scene that it becomes is refused",
+            "# the waves of the wavefield, model.sdf:1",
+        ),
+    ),
+    "boat.urdf": (
+        (urdf(links="<link name='a'/>", joints=urdf_joint("a", "a")), "connects 'a' with itself", "/joint[a to a]: "),
+        (urdf(links=AB, joints=urdf_joint("a", "b") + urdf_joint("b", "a")), "a circle (", "/robot[boat]/joint["),
+        ("<robot xmlns:xacro='x'><xacro:macro/></robot>", "elements of xacro", "/robot/xacro:macro: "),
+        ("<robot name='r'><link name='a'/><link name='b'/></robot>", "2 root links (a, b)"),
+        (urdf(joints=urdf_joint("base", "c")), "'c', which does not exist", "/robot[boat]/joint[base to c]: "),
+        (urdf(joints="<link name='base'/>"), "two of the model are named 'base'", "/robot[boat]/link[base]: "),
+    ),
+    "boat.urdf.xacro": (("<robot/>", "Expand it: xacro boat.urdf.xacro"),),
+    "boat.xml": (
+        (mjcf(hull(name="pod", fromto="1 2 3 1 2 3")), "two equal points", "/worldbody/body[b]/geom[pod]: "),
+        (mjcf("<geom type='capsule' fromto='0 0 0 1 0 0'/>"), "has 1 numbers", "2 for a capsule"),
+        (mjcf(hull(quat="0 0 0 0")), "a quaternion or an axis of length 0"),
+        (mjcf(hull(xyaxes="1 0 0 2 0 0")), "two axes along one line"),
+        (mjcf(hull(zaxis="0 0 0")), "an axis of length 0"),
+        (mjcf(hull(**{"class": "none"})), "the class 'none' does not exist", "one of: main"),
+        (mjcf("<replicate/>"), "<replicate>", "mj_saveLastXML"),
+        (mjcf("<geom type='mesh' mesh='hull'/>"), "the mesh 'hull' does not exist", "one of: none"),
+    ),
+}
+
+
 class RefusesBrokenModels(ImportTestCase):
+    def test_broken_models(self):
+        for name, cases in REFUSED.items():
+            for model, *words in cases:
+                with self.subTest(words=words):
+                    self.assert_refused(model, f"/{name}", *words, name=name)
+
+    def test_errors_of_included_files_have_path_through_both(self):
+        for name, content, words in (
+            ("arm.config", "", "/sdf/model[vehicle]/include: "),
+            ("model.config", "<model/>", "has neither model.config nor model.sdf"),
+            ("model.sdf", sdf(link(pose="<pose>x</pose>")), "[vehicle]/include/sdf/model[vehicle]/link[base]/pose: "),
+            ("model.config", "<model><sdf>none.sdf</sdf></model>", "none.sdf: cannot be read"),
+        ):
+            with self.subTest(words=words):
+                self.assert_refused(sdf(link() + INCLUDE), "model.sdf:1: /sdf", words, files={f"arm/{name}": content})
+
     def test_entities(self):
         bomb = "<!DOCTYPE sdf [<!ENTITY a 'aaaaaaaaaa'><!ENTITY b '&a;&a;&a;&a;'>]><sdf version='1.9'>&b;</sdf>"
         self.assert_refused(bomb, "document type", "model.sdf:1")
@@ -142,22 +230,9 @@ class RefusesBrokenModels(ImportTestCase):
         xml_file.MAX_BYTES = 1024 * 1024
         self.assert_refused("<sdf>" + " " * (1024 * 1024) + "</sdf>", "more than 1 MiB")
 
-    def test_other_files(self):
-        self.assert_refused("hello", "is not XML")
-        self.assert_refused("<html/>", "root element is <html>")
-        self.assert_refused("<robot/>", "Expand it: xacro boat.urdf.xacro", name="boat.urdf.xacro")
-        self.assert_refused("<robot xmlns:xacro='x'><xacro:macro/></robot>", "elements of xacro", name="boat.urdf")
-        self.assert_refused("<sdf version='1.9'><model name='a'>", "is not XML")
-
     def test_model_that_includes_itself(self):
         text = sdf(link() + "<include><uri>model://vehicle</uri></include>")
         self.assert_refused(text, "too deeply", name="vehicle/model.sdf")
-
-    def test_numbers(self):
-        self.assert_refused(sdf(link(inside=box(size="1 1") + inertial())), "size [1.0, 1.0]", "3 lengths")
-        self.assert_refused(sdf(link(inside=box(size="1 nan 1") + inertial())), "'1 nan 1'", "finite numbers")
-        self.assert_refused(sdf(link(inside=box(size="1 1 -1") + inertial())), "lengths above 0")
-        self.assert_refused(sdf(link(pose="<pose>0 0 ${z}</pose>")), "template that was not expanded")
 
     def test_masses(self):
         automatic = "<inertial auto='true'><density>{}</density></inertial>"
@@ -174,18 +249,6 @@ class RefusesBrokenModels(ImportTestCase):
                 self.assert_refused(model.format("-2"), "is -2", "at least 0", f"{name}:1", name=name)
                 self.assert_refused(model.format("nan"), "is 'nan'", "finite numbers", f"{name}:1", name=name)
 
-    def test_joints_that_form_no_tree(self):
-        mast = link("mast", box() + inertial())
-        circle = "<link name='a'/><link name='b'/>"
-        for name, model, words in (
-            ("model.sdf", sdf(link() + fixed("base", "base")), "connects 'base' with itself"),
-            ("model.sdf", sdf(link() + mast + fixed("base", "mast") + fixed("mast", "base", "revolute")), "a circle ("),
-            ("boat.urdf", urdf(links="<link name='a'/>", joints=urdf_joint("a", "a")), "connects 'a' with itself"),
-            ("boat.urdf", urdf(links=circle, joints=urdf_joint("a", "b") + urdf_joint("b", "a")), "a circle ("),
-        ):
-            with self.subTest(model=model):
-                self.assert_refused(model, words, f"{name}:1", name=name)
-
     def test_closed_chain_is_reported(self):
         rods = [link(name, box(f"{name} box") + inertial()) for name in ("left", "right", "top")]
         pins = [("base", "left"), ("base", "right"), ("left", "top"), ("right", "top")]
@@ -197,22 +260,6 @@ class RefusesBrokenModels(ImportTestCase):
         result = self.import_model(sdf(link(inside=box(size="1 <x/>2.<y/>5 <!-- z -->&#51;") + inertial())))
         self.assertEqual(result.body["part"][0]["shape"]["size"], [1, 2.5, 3])
 
-    def test_errors_name_path(self):
-        included = "<include><uri>model://arm</uri></include>"
-        for model, words, files in (
-            (sdf(link(inside=box(size="1 x 1"))), "/model[vehicle]/link[base]/collision[box]/geometry/box/size", {}),
-            (sdf(link() + fixed("base", "mast")), "/sdf/model[vehicle]/joint[base to mast]: no link", {}),
-            (sdf(box()), "/sdf/model[vehicle]: the model 'vehicle' has no link", {}),
-            (sdf(link() + included), "/sdf/model[vehicle]/include: ", {"arm/model.config": "<model/>"}),
-            (sdf(link() + "<frame><pose/></frame>"), "/sdf/model[vehicle]/frame: the <frame> has no name", {}),
-            (sdf(link(inside=box() + inertial("1e13"))), "/inertial/mass: <mass> is '1e13'; expected", {}),
-        ):
-            with self.subTest(words=words):
-                self.assert_refused(model, "model.sdf:1: /sdf/model[vehicle]", words, files=files)
-        wave = "<wavefield><wave><model>CWR</model><amplitude>1e6</amplitude></wave></wavefield>"
-        high = sdf(link() + f"<plugin filename='libSurface.so' name='vrx::Surface'>{wave}</plugin>")
-        self.assert_refused(high, "model[vehicle]: the scene", "# the waves of the wavefield, model.sdf:1")
-
     def test_frames_that_are_nested_too_deeply(self):
         frames = [
             f"<frame name='f{i}'><pose relative_to='f{i + 1}'/></frame><frame name='g{i}' attached_to='g{i + 1}'/>"
@@ -221,17 +268,6 @@ class RefusesBrokenModels(ImportTestCase):
         for name in ("f0", "g0"):
             pose = f"<pose relative_to='{name}'/>"
             self.assert_refused(sdf(link(pose=pose) + "".join(frames)), "more than 200 others")
-
-    def test_capsule_without_length(self):
-        geom = '<geom name="pod" type="capsule" size="0.1" fromto="1 2 3 1 2 3" mass="1"/>'
-        text = f"<mujoco><worldbody><body name='a'>{geom}</body></worldbody></mujoco>"
-        self.assert_refused(text, "two equal points", name="vehicle.xml")
-
-    def test_uri_that_no_file_system_holds(self):
-        self.assert_refused(sdf(link(inside=mesh("a" * 5000))), "is not found")
-
-    def test_joint_of_unknown_link(self):
-        self.assert_refused(sdf(link() + fixed("base", "mast")), "'mast'")
 
     def test_missing_file(self):
         result = self.run_import(sdf(link()), "--path", "/nowhere")
