@@ -152,12 +152,14 @@ WAVE = "<plugin filename='libSurface.so' name='vrx::Surface'><wavefield><wave>{}
 REFUSED = {
     "model.sdf": (
         ("hello", "is not XML"),
+        ("<?xml version='1.0' encoding='UTF-9'?><sdf/>", "unknown encoding: UTF-9"),
         ("<html/>", "root element is <html>"),
         ("<sdf version='1.9'><model name='a'>", "is not XML"),
         (sdf(box()), "/sdf/model[vehicle]: the model 'vehicle' has no link"),
-        (sdf(link(inside=box(size="1 1") + inertial())), "size [1.0, 1.0]", "3 lengths", "/collision[box]: "),
+        (sdf(link(inside=box(size="1 1") + inertial())), "size [1.0, 1.0]", "3 lengths from 1e-12 to 1e+06 m", "/collision[box]: "),
         (sdf(link(inside=box(size="1 nan 1") + inertial())), "'1 nan 1'", "finite numbers", "/geometry/box/size: "),
-        (sdf(link(inside=box(size="1 1 -1") + inertial())), "lengths above 0", "/link[base]/collision[box]: "),
+        (sdf(link(inside=box(size="1 1 -1") + inertial())), "3 lengths", "/link[base]/collision[box]: "),
+        (sdf(link(inside=box(size="1 1 1e-320") + inertial())), "3 lengths", "/link[base]/collision[box]: "),
         (sdf(link(inside=box(size="") + inertial())), "<box> of 'box' has no size", "/collision[box]/geometry/box: "),
         (sdf(link(pose="<pose>0 0 ${z}</pose>")), "template that was not expanded", "/link[base]/pose: "),
         (sdf(link(pose="<pose rotation_format='quat_xyzw'>1 2 3 0 0 0 0</pose>")), "length 0", "/link[base]/pose: "),

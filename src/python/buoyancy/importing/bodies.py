@@ -66,14 +66,13 @@ def _without_accessories(model, groups, options, report):
     for plugin in model.plugins:
         if _THRUSTER_PLUGIN.search(plugin.name + plugin.filename):
             driven.update(plugin.prefix + plugin.element.text_of(key) for key in _DRIVEN)
-    main = next((group for group in groups if any(link.name == model.canonical for link in group.links)), None)
     result, lost = [], 0.0
     for group in groups:
         names = [link.name for link in group.links]
         reason = ""
         if not geometry_of(group, options):
             reason = "has no volume"
-        elif group is main or any(name in options.keep for name in names):
+        elif model.canonical in names or any(name in options.keep for name in names):
             reason = ""
         elif any(name in driven or moving.get(name) in driven for name in names) or _PROPELLER.search(group.root.name):
             reason = "is a propeller"

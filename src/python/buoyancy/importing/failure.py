@@ -1,5 +1,7 @@
 """The error that ends an import, and the report of what was changed and what was left out."""
 
+_MAX_NAMES = 40  # in a sentence
+
 
 class ImportFailure(Exception):
     """A model that cannot be imported; one line that says what was found, what is expected, and what to do."""
@@ -12,7 +14,9 @@ def fail(place, actual, expected, cause, hint):
 
 
 def one_of(names):
-    return f"one of: {', '.join(names) or 'none'}"
+    names = list(names)
+    more = f" and {len(names) - _MAX_NAMES} more" if len(names) > _MAX_NAMES else ""
+    return f"one of: {', '.join(names[:_MAX_NAMES]) or 'none'}{more}"
 
 
 def choose(root, candidates, preferred, name, kind):

@@ -21,7 +21,7 @@ from .xml_file import XmlReader
 SIDES, BANDS = 128, 64
 SPHERE_SEGMENTS = 96
 _HOLES = 0.01  # share of the volume up to which holes are closed if a mesh does not close otherwise
-_MAX_LENGTH = 1e6  # m, of a shape; --check warns much earlier
+_LENGTHS = (1e-12, 1e6)  # m, of shapes; --check warns of large ones much earlier
 _GRID = 32  # points along each axis of the box in which an overlap is sampled
 
 
@@ -38,9 +38,9 @@ class Solid:
 def solid_of(geometry):
     """The solid of a shape, in closed form."""
     size, count = geometry.size, {"box": 3, "ellipsoid": 3, "sphere": 1}.get(geometry.kind, 2)
-    if len(size) != count or any(not 0 < c < _MAX_LENGTH for c in size):
+    if len(size) != count or any(not _LENGTHS[0] < c < _LENGTHS[1] for c in size):
         fail(geometry.element, f"{geometry.kind} '{geometry.name}' has the size {list(size)}",
-             f"{count} lengths above 0, in m", "a size that is missing or in another unit", "Correct the model")
+             f"{count} lengths from {_LENGTHS[0]:g} to {_LENGTHS[1]:g} m", "a size that is missing or in another unit", "Correct the model")
     kind, centroid = geometry.kind, np.zeros(3)
     if kind in ("box", "sphere", "ellipsoid"):
         half = size * 3 if kind == "sphere" else tuple(c / 2 for c in size) if kind == "box" else size

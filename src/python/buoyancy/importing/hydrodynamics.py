@@ -13,7 +13,7 @@ from typing import Optional
 import numpy as np
 
 from . import frames
-from .failure import fail
+from .failure import fail, one_of
 
 MATRICES = ("linear", "quadratic", "added_mass")
 _FORCES, _VELOCITIES = "xyzkmn", "uvwpqr"
@@ -117,7 +117,7 @@ class Hydrodynamics:
             if full in self.model.links:
                 return full
         self.report.warn(f"plugin '{plugin.name}' is for the link '{name}', which does not exist: its coefficients are "
-                         f"left out; expected one of: {', '.join(self.model.links)}", element)
+                         f"left out; expected {one_of(self.model.links)}", element)
         return None
 
     def _set_water(self, key, value, element):

@@ -6,7 +6,7 @@ from typing import Optional
 import numpy as np
 
 from . import frames
-from .failure import fail, one_of
+from .failure import fail
 
 # The density [kg/m^3] with which gz-sim and MuJoCo compute the mass of a body from its geometry.
 DEFAULT_DENSITY = 1000.0

@@ -175,8 +175,8 @@ class XmlReader:
         parser.StartDoctypeDeclHandler = doctype
         try:
             parser.Parse(data, True)
-        except xml.parsers.expat.ExpatError as error:
-            fail(f"{path}:{error.lineno}", f"is not XML ({xml.parsers.expat.ErrorString(error.code)})",
+        except (xml.parsers.expat.ExpatError, LookupError, ValueError) as error:  # the latter two: of its encoding
+            fail(f"{path}:{parser.CurrentLineNumber}", f"is not XML ({error})",
                  "an SDF, URDF or MJCF file", "a template (.erb, .xacro, Jinja) or another format",
                  "Expand the template first")
         return root[0]
