@@ -158,7 +158,7 @@ class Importer:
     def _write_world(self):
         text, water, gravity, source = self.text, self.water.water, self.model.gravity, self.model.gravity_source
         if gravity is not None and any(gravity):
-            length = math.sqrt(sum(c * c for c in gravity))
+            length = math.hypot(*gravity)  # right for the smallest numbers, too
             text.table("world")
             text.key("gravity", length, f"m/s^2, {source}")
             text.key("up", scene_toml.vector([-c / length for c in gravity]), f"against gravity, {source}")
