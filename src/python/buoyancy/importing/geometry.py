@@ -40,7 +40,8 @@ def solid_of(geometry):
     size, count = geometry.size, {"box": 3, "ellipsoid": 3, "sphere": 1}.get(geometry.kind, 2)
     if len(size) != count or any(not _LENGTHS[0] < c < _LENGTHS[1] for c in size):
         fail(geometry.element, f"{geometry.kind} '{geometry.name}' has the size {list(size)}",
-             f"{count} lengths from {_LENGTHS[0]:g} to {_LENGTHS[1]:g} m", "a size that is missing or in another unit", "Correct the model")
+             f"{count} lengths from {_LENGTHS[0]:g} to {_LENGTHS[1]:g} m", "a size that is missing or in another unit",
+             "Correct the model")
     kind, centroid = geometry.kind, np.zeros(3)
     if kind in ("box", "sphere", "ellipsoid"):
         half = size * 3 if kind == "sphere" else tuple(c / 2 for c in size) if kind == "box" else size
