@@ -3,6 +3,7 @@ import os
 import subprocess
 import sys
 import unittest
+import warnings
 
 import numpy as np
 from importing_support import BOX_OBJ, ImportTestCase, box, fixed, inertial, link, sdf
@@ -112,6 +113,29 @@ class ImportsGeometry(ImportTestCase):
         result = self.import_model(text, files={"hull.obj": open_box})
         self.assertEqual(result.body["part"][0]["close_holes"], 0.01)
         self.assertIn("close_holes = 0.01 closes its holes", result.output)
+
+    def test_axis_up_of_collada_is_a_note(self):
+        # A tetrahedron with y up in its file: Gazebo takes its coordinates as they are.
+        geometry = (
+            "<geometry id='g'><mesh><source id='p'><float_array id='a' count='12'>0 0 0 1 0 0 0 1 0 0 0 1</float_array>"
+            "<technique_common><accessor source='#a' count='4' stride='3'><param name='X' type='float'/>"
+            "<param name='Y' type='float'/><param name='Z' type='float'/></accessor></technique_common></source>"
+            "<vertices id='v'><input semantic='POSITION' source='#p'/></vertices><triangles count='4'>"
+            "<input semantic='VERTEX' source='#v' offset='0'/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles></mesh></geometry>"
+        )
+        collada = (
+            "<COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'><asset>"
+            f"<up_axis>Y_UP</up_axis></asset><library_geometries>{geometry}</library_geometries><library_visual_scenes>"
+            "<visual_scene id='s'><node><instance_geometry url='#g'/></node></visual_scene></library_visual_scenes>"
+            "<scene><instance_visual_scene url='#s'/></scene></COLLADA>"
+        )
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            result = self.import_model(
+                sdf(link(inside=mesh("hull.dae") + inertial(100))), files={"hull.dae": collada}
+            )
+        self.assertIn("note: mesh 'hull.dae' has another axis than z up in its file", result.output)
+        self.assertEqual(result.error, "")
 
     def test_body_floats_as_computed_by_hand(self):
         # A catamaran of two boxes 4 x 0.5 x 1: 820 kg displace 0.8 m^3, 0.2 m deep.
