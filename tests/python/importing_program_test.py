@@ -39,6 +39,13 @@ class ImportsGeometry(ImportTestCase):
         self.addCleanup(os.environ.pop, "GZ_SIM_RESOURCE_PATH")
         self.import_model(sdf(link(inside=mesh("model://boat/meshes/hull.obj") + inertial())))
 
+    def test_other_schemes_are_searched_like_models(self):
+        for uri in ("model://boat/hull.obj", "models://boat/hull.obj"):
+            result = self.import_model(
+                sdf(link(inside=mesh(uri) + inertial())), name="worlds/boat.sdf", files={"models/boat/hull.obj": BOX_OBJ}
+            )
+            self.assertEqual(result.body["part"][0]["mesh"]["file"], "models/boat/hull.obj")
+
     def test_missing_mesh_names_places(self):
         text = sdf(link(inside=mesh("model://boat/hull.obj") + inertial()))
         self.assert_refused(

@@ -27,17 +27,18 @@ class FileSearch:
             scheme, name = "file", name[len("file:") :]
         if scheme == "file" and os.path.isabs(name):
             candidates = [Path(name)]
-        elif scheme in ("model", "package"):
-            # The first part names a folder below one that is searched, or is the name of that folder itself.
+        elif scheme in ("http", "https"):
+            last = name.rstrip("/").split("/models/")[-1].split("/")[0]
+            candidates = [folder / last for folder in self.folders]
+        elif separator and scheme != "file":
+            # The first part names a folder below one that is searched, or is the name of that folder itself. Gazebo
+            # takes every other scheme, such as models://, for model://.
             first, _, inside = name.partition("/")
             candidates = [near.parent / name]
             for folder in [near, *self.folders]:
                 candidates += [folder / name, folder / "models" / name]
                 if folder.name == first:
                     candidates.append(folder / inside)
-        elif scheme in ("http", "https"):
-            last = name.rstrip("/").split("/models/")[-1].split("/")[0]
-            candidates = [folder / last for folder in self.folders]
         else:
             candidates = [near / name, *(folder / name for folder in self.folders)]
         for candidate in candidates:
