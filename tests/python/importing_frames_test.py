@@ -99,6 +99,13 @@ class ImportsFramesOfSdf(ImportTestCase):
         self.assert_refused(sdf(cycle + link(pose=pose("0 0 0 0 0 0", relative_to="a"))), "relative to itself")
         self.assert_refused(sdf(link(pose=pose("0 0 0 0 0 0", relative_to="nose"))), "'nose'", "model.sdf:1")
 
+    def test_static_model_is_free(self):
+        files = {"pier/model.sdf": sdf("<static>true</static>" + link())}
+        included = "<sdf version='1.9'><world name='w'><include><uri>model://pier</uri></include></world></sdf>"
+        for text in (files["pier/model.sdf"], included):
+            self.assertIn("the model is static: it is free in the scene", self.import_model(text, files=files).output)
+        self.assertNotIn("static", self.import_model(sdf(link())).output)
+
     def test_gravity_gives_up(self):
         text = (
             sdf(link())

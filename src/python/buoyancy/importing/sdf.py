@@ -160,6 +160,8 @@ class SdfReader:
         scope = self._scope(element, outer, 0)
         outer.models[scope.name] = scope
         model = Model(scope.name, element.source, "SDF", pose=scope.model_pose())
+        if element.flag("static") or scope.element.flag("static"):
+            self.report.note(f"the model is static: it is free in the scene ({element.source})")
         self._flatten(scope, frames.IDENTITY, model)
         model.canonical = scope.canonical(element)
         if world is not None:
