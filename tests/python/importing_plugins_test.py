@@ -222,6 +222,20 @@ class ConvertsWater(ImportTestCase):
         self.assertIn("1000 kg/m^3 above -5 m", result.text)
         self.assertIn("1 kg/m^3 above 2 m are air", result.text)
 
+    def test_enabled_entities_are_those_of_the_model(self):
+        for names, words in (
+            (["vehicle"], None),
+            (["raft", "vehicle::base"], "note: <enable> vehicle::base: every body of the scene is buoyant"),
+            (["raft", "buoy"], "warning: <enable> does not name 'vehicle'"),
+        ):
+            inside = "".join(f"<enable>{name}</enable>" for name in names)
+            output = self.import_model(world(self.BUOYANCY.format(inside))).output
+            self.assertNotIn("<enable> raft", output)
+            if words is None:
+                self.assertNotIn("enable", output)
+            else:
+                self.assertIn(words, output)
+
     def test_current_has_two_angles(self):
         text = (
             "<plugin filename='libuuv_underwater_current_ros_plugin.so' name='underwater_current_plugin'>"

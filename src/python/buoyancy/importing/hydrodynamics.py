@@ -185,8 +185,16 @@ class Hydrodynamics:
                         f"graded buoyancy: {density:g} kg/m^3 above {height:g} m; the water of the "
                         f"scene has {default:g} kg/m^3 everywhere ({layer.source})"
                     )
-        for child in element.all("enable"):
-            self.report.note(f"<enable> {child.text.strip()}: every body of the scene is buoyant ({child.source})")
+        enabled = [(child.text.strip(), child.source) for child in element.all("enable")]
+        own = [item for item in enabled if self.model.name in item[0].split("::")]
+        if enabled and not own:
+            self.report.warn(
+                f"<enable> does not name '{self.model.name}': it has no buoyancy in Gazebo, but in the scene "
+                f"({enabled[0][1]})"
+            )
+        for name, source in own:
+            if name != self.model.name:
+                self.report.note(f"<enable> {name}: every body of the scene is buoyant ({source})")
         return True
 
     def simple_hydrodynamics(self, plugin):
