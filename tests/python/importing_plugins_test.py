@@ -211,6 +211,15 @@ class ConvertsWater(ImportTestCase):
         text = world(self.BUOYANCY.format("<uniform_fluid_density>998</uniform_fluid_density>"))
         self.assertEqual(self.import_model(text).scene["water"]["density"], 998)
 
+    def test_density_of_hydrodynamics_is_second_choice(self):
+        for key in ("water_density", "waterDensity"):
+            text = f"<model name='vehicle'>{link() + plugin(GZ, xU=-1, **{key: 998})}</model>"
+            self.assertEqual(self.import_model(world(model=text)).scene["water"]["density"], 998)
+            buoyancy = self.BUOYANCY.format("<uniform_fluid_density>1020</uniform_fluid_density>")
+            result = self.import_model(world(buoyancy, model=text))
+            self.assertEqual(result.scene["water"]["density"], 1020)
+            self.assertIn("density of the water is 1020.0 (model.sdf:1) and 998.0 (model.sdf:1)", result.output)
+
     def test_air_above_gives_level(self):
         layers = (
             "<graded_buoyancy><default_density>1020</default_density><density_change><above_depth>-5</above_depth>"

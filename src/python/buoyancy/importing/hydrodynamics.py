@@ -74,8 +74,11 @@ class Hydrodynamics:
                         changed="fluid_added_mass as it is",
                     )
                 )
+        self.stated_density = None  # the element of a plugin that has no other use for it
         for plugin in model.plugins:
             self._read(plugin)
+        if self.stated_density is not None:
+            self.set_water("density", self.stated_density.numbers(1)[0], self.stated_density)
 
     def _read(self, plugin):
         names = f"{plugin.name} {plugin.filename}"
@@ -152,6 +155,7 @@ class Hydrodynamics:
                 )
         if element.flag("disable_coriolis"):
             self.report.note(f"disable_coriolis: the Coriolis terms of added mass act in the scene ({element.source})")
+        self.stated_density = self.stated_density or element.find("water_density") or element.find("waterDensity")
         current = element.find("default_current")
         if current is not None:
             self.set_water("current", tuple(current.numbers(3)), current)
