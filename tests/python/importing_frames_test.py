@@ -290,6 +290,23 @@ class ImportsMjcf(ImportTestCase):
         for words in ("density = 1000", "viscosity = 0.001", 'fluidshape = "ellipsoid"'):
             self.assertIn(words, result.output)
 
+    def test_what_holds_the_vehicle_is_reported(self):
+        model = """<mujoco><option><flag gravity='disable'/></option><default><joint type='{}'/></default><worldbody>
+          <body name='b'>{}<geom type='box' size='1 1 1'/></body></worldbody>
+          <tendon><fixed name='cable'/></tendon><equality><connect name='hook'/></equality></mujoco>"""
+        free = "it is free in the scene"
+        for kind, joint, words in (
+            ("slide", "<joint/>", f"the body 'b' moves on joints of the world: {free}"),
+            ("slide", "", f"the body 'b' is fixed to the world: {free}"),
+            ("slide", "<freejoint/>", None),
+            ("free", "<joint/>", None),
+        ):
+            output = self.import_model(model.format(kind, joint), name="b.xml").output
+            self.assertIn(words or "not converted: 3", output)
+            self.assertEqual(free in output, words is not None)
+            for left_out in ("gravity 0", "tendon 'cable' (fixed)", "equality 'hook' (connect)"):
+                self.assertIn(f"- {left_out}", output)
+
     def test_capsule_runs_from_to(self):
         model = """<mujoco><worldbody><body name='b'><freejoint/><geom type='capsule' fromto='0 0 0 2 0 0' size='0.5'/>
           </body></worldbody></mujoco>"""

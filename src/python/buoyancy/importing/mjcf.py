@@ -43,6 +43,10 @@ class MjcfReader:
         # The frame of the model is that of its first body.
         model.pose = frames.compose(pose, self._pose(body, {}))
         self._read_options(root, model)
+        joints = [self._merged(joint, childclass).get("type", "hinge") for joint in body.all("joint")]
+        if "free" not in joints and not body.all("freejoint"):
+            held = "moves on joints of" if joints else "is fixed to"
+            self.report.note(f"the body '{model.name}' {held} the world: it is free in the scene ({body.source})")
         for other, _, _ in tops:
             if other is not body:
                 self.report.leave_out(f"body '{other.get('name', '')}' beside the vehicle ({other.source})")
@@ -52,6 +56,12 @@ class MjcfReader:
                 self.report.leave_out(
                     f"actuator '{actuator.get('name', '')}' ({actuator.tag}) on '{target}': a force "
                     f"of your simulator ({actuator.source})"
+                )
+        for section in root.all("equality", "tendon"):
+            for child in section.children:
+                self.report.leave_out(
+                    f"{section.tag} '{child.get('name', '')}' ({child.tag}): a constraint of your simulator "
+                    f"({child.source})"
                 )
         return model
 
@@ -251,6 +261,9 @@ class MjcfReader:
         for option in root.all("option"):
             if "gravity" in option.attributes:
                 model.gravity, model.gravity_source = (tuple(option.attribute_numbers("gravity", 3)), option.source)
+            flag = option.find("flag")
+            if flag is not None and flag.get("gravity") == "disable":
+                model.gravity, model.gravity_source = ((0.0, 0.0, 0.0), flag.source)
             for key, unit in (("density", "kg/m^3"), ("viscosity", "Pa s"), ("wind", "m/s")):
                 if key in option.attributes:
                     self.report.leave_out(
