@@ -188,6 +188,9 @@ class GroupsLinksIntoBodies(ImportTestCase):
         self.assertIn("'propeller' (model.sdf:1), 3 kg: is a propeller", result.output)
         self.assertIn("'tether' (model.sdf:1), 4 kg: has no volume", result.output)
         self.assertIn("left out have 7 kg", result.output)
+        self.assertIn("note: joint 'base to fin': the bodies of the scene move freely", result.output)
+        joints = "note: joints 'base to fin', 'base to mast': the bodies of the scene move freely"
+        self.assertIn(joints, self.import_model(self.MODEL, "--links").output)
 
     def test_specks_have_no_volume(self):
         speck = link("depth", box("speck", "1e-6 1e-6 1e-6") + inertial(0.01))

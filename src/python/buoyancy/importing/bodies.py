@@ -55,7 +55,20 @@ def group_links(model, options, report):
         roots = [name for name in names if name not in children] or names
         root = model.canonical if model.canonical in roots else roots[0]
         result.append(Group(kept[root], [kept[name] for name in names]))
-    return _without_accessories(model, result, options, report)
+    result = _without_accessories(model, result, options, report)
+    shown = {link.name for group in result for link in group.links}
+    left = [
+        joint.name
+        for joint in model.joints
+        if (options.links or not joint.fixed) and joint.parent in shown and joint.child in shown
+    ]
+    if left:
+        more = f" and {len(left) - 4} more" if len(left) > 4 else ""
+        report.note(
+            f"joint{'s' if len(left) > 1 else ''} {', '.join(map(repr, left[:4]))}{more}: the bodies of the scene "
+            "move freely, your simulator joins them"
+        )
+    return result
 
 
 def _without_accessories(model, groups, options, report):
