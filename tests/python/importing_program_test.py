@@ -175,6 +175,7 @@ class RefusesBrokenModels(ImportTestCase):
         self.assert_refused("<robot/>", "Expand it: xacro boat.urdf.xacro", name="boat.urdf.xacro")
         self.assert_refused("<robot xmlns:xacro='x'><xacro:macro/></robot>", "elements of xacro", name="boat.urdf")
         self.assert_refused("<sdf version='1.9'><model name='a'>", "is not XML")
+        self.assert_refused("<sdf version='1.9'>\n<model name=a/></sdf>", "model.sdf:2: is not XML", "without quotes")
 
     def test_model_that_includes_itself(self):
         text = sdf(link() + "<include><uri>model://vehicle</uri></include>")

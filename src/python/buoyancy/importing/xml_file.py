@@ -148,6 +148,7 @@ class XmlReader:
             parser.Parse(data, True)
         except xml.parsers.expat.ExpatError as error:
             fail(f"{path}:{error.lineno}", f"is not XML ({xml.parsers.expat.ErrorString(error.code)})",
-                 "an SDF, URDF or MJCF file", "a template (.erb, .xacro, Jinja) or another format",
-                 "Expand the template first")
+                 "an SDF, URDF or MJCF file",
+                 "a template (.erb, .xacro, Jinja), a value without quotes, or a bare & or < in a text",
+                 "Expand the template, or correct this line: Gazebo's own reader is less strict")
         return root[0]
