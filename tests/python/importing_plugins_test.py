@@ -268,12 +268,13 @@ class ConvertsWater(ImportTestCase):
         text = (
             "<plugin filename='libSurface.so' name='vrx::Surface'><link_name>base</link_name>"
             "<fluid_level>1</fluid_level>"
-            f"<hull_radius>0.2</hull_radius><wavefield>{wave}</wavefield></plugin>"
+            f"<hull_radius>0.2</hull_radius><linear_drag>25</linear_drag><wavefield>{wave}</wavefield></plugin>"
         )
         result = self.import_model(sdf(link() + text))
         water = result.scene["water"]
         self.assertEqual(water["level"], 1)
-        self.assertIn("<hull_radius> = 0.2", result.text)
+        self.assertIn("<hull_radius> = 0.2 of 'vrx::Surface': buoyancy follows from the geometry", result.text)
+        self.assertIn("<linear_drag> = 25 of 'vrx::Surface': give [body.drag] instead", result.text)
         omega = math.pi / 2
         expected = [
             (0.05, omega * math.sqrt(2), 90 - math.degrees(0.5)),

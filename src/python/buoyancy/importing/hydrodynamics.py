@@ -262,9 +262,8 @@ class Hydrodynamics:
             found = element.find(tag)
             if found is not None:
                 value = f" = {found.text.strip()}" if found.text.strip() else ""
-                self.report.leave_out(
-                    f"<{tag}>{value} of '{plugin.name}': buoyancy follows from the geometry ({found.source})"
-                )
+                why = "give [body.drag] instead" if "drag" in tag else "buoyancy follows from the geometry"
+                self.report.leave_out(f"<{tag}>{value} of '{plugin.name}': {why} ({found.source})")
         self.wavefield(plugin)
         return True
 
