@@ -192,6 +192,18 @@ class GroupsLinksIntoBodies(ImportTestCase):
         joints = "note: joints 'base to fin', 'base to mast': the bodies of the scene move freely"
         self.assertIn(joints, self.import_model(self.MODEL, "--links").output)
 
+    def test_kept_link_without_volume_is_a_mass(self):
+        # The tether's 4 kg hang at x = 3 on a ball joint: of 509 kg the centre moves by 12 / 509.
+        model = self.MODEL.replace("<link name='tether'>", "<link name='tether'>" + pose("3 0 0 0 0 0"))
+        result = self.import_model(model, "--keep", "tether")
+        self.assertIn("note: joint 'base to fin': the bodies of the scene move freely", result.output)
+        self.assertEqual(result.body["client"]["mass"], 509)
+        self.assert_numbers(result.body["client"]["center_of_mass"], [12 / 509, 0, 0])
+        self.assertIn("'tether': its mass is fixed to 'base', with 'base to tether' at 0", result.output)
+        self.assertIn("left out have 3 kg", result.output)
+        loose = self.import_model(sdf(link() + link("weight", inertial(1))), "--keep", "weight")
+        self.assertIn("'weight' (model.sdf:1), 1 kg: has no volume, nor what its joint hangs it on", loose.output)
+
     def test_specks_have_no_volume(self):
         speck = link("depth", box("speck", "1e-6 1e-6 1e-6") + inertial(0.01))
         result = self.import_model(sdf(link() + speck + fixed("base", "depth", "revolute")))

@@ -72,7 +72,8 @@ def arguments(argv, version):
         action="append",
         default=[],
         metavar="LINK",
-        help="Keep a link that is taken for a propeller or a sensor; may be repeated",
+        help="Keep a link that is taken for a propeller or a sensor, or the mass of one without volume; may be "
+        "repeated",
     )
     options.add_argument(
         "--path",
