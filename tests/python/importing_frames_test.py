@@ -204,6 +204,22 @@ class GroupsLinksIntoBodies(ImportTestCase):
         loose = self.import_model(sdf(link() + link("weight", inertial(1))), "--keep", "weight")
         self.assertIn("'weight' (model.sdf:1), 1 kg: has no volume, nor what its joint hangs it on", loose.output)
 
+    def test_joints_with_limits_of_zero_are_fixed(self):
+        limits = "<axis><xyz>0 0 1</xyz><limit><lower>{}</lower><upper>{}</upper></limit></axis></joint>"
+        sdf_model = sdf(link() + link("bow", box("bow box") + inertial(3)) + fixed("base", "bow", "revolute"))
+        urdf = (
+            "<robot name='vehicle'><link name='base'>{0}<inertial><mass value='500'/></inertial></link>"
+            "<link name='bow'>{0}</link><joint name='base to bow' type='revolute'><parent link='base'/>"
+            "<child link='bow'/><limit lower='{{}}' upper='{{}}'/></joint></robot>"
+        ).format("<collision><geometry><box size='1 1 1'/></geometry></collision>")
+        for model, name in ((sdf_model.replace("</joint>", limits), "boat.sdf"), (urdf, "boat.urdf")):
+            result = self.import_model(model.format(0, 0), name=name)
+            self.assertEqual(len(result.bodies), 1)
+            self.assertIn("note: joint 'base to bow' with limits of 0 and 0: fixed", result.output)
+            for ends in ((0, 1), (-1, 0)):
+                self.assertEqual(len(self.import_model(model.format(*ends), name=name).bodies), 2)
+        self.assertEqual(len(self.import_model(sdf_model).bodies), 2)
+
     def test_specks_have_no_volume(self):
         speck = link("depth", box("speck", "1e-6 1e-6 1e-6") + inertial(0.01))
         result = self.import_model(sdf(link() + speck + fixed("base", "depth", "revolute")))

@@ -41,6 +41,9 @@ def group_links(model, options, report):
         return name
 
     children = set()
+    locked = [joint.name for joint in model.joints if joint.locked]
+    if locked and not options.links:
+        report.note(f"{_joints(locked)} with limits of 0 and 0: fixed")
     for joint in model.joints:
         if "world" in (joint.parent, joint.child) and joint.fixed:
             report.note(f"joint '{joint.name}' fixes the model to the world: it is free in the scene")
@@ -65,12 +68,13 @@ def group_links(model, options, report):
     body = {link.name: number for number, group in enumerate(result) for link in group.links}
     left = [j.name for j in model.joints if j.parent in body and body[j.parent] != body.get(j.child, body[j.parent])]
     if left:
-        more = f" and {len(left) - 4} more" if len(left) > 4 else ""
-        report.note(
-            f"joint{'s' if len(left) > 1 else ''} {', '.join(map(repr, left[:4]))}{more}: the bodies of the scene "
-            "move freely, your simulator joins them"
-        )
+        report.note(f"{_joints(left)}: the bodies of the scene move freely, your simulator joins them")
     return result
+
+
+def _joints(names):
+    more = f" and {len(names) - 4} more" if len(names) > 4 else ""
+    return f"joint{'s' if len(names) > 1 else ''} {', '.join(map(repr, names[:4]))}{more}"
 
 
 def _without_accessories(model, groups, options, report):

@@ -60,6 +60,7 @@ class Joint:
     parent: str  # a link, or "world"
     child: str
     fixed: bool
+    locked: bool = False  # fixed by limits of 0 and 0, as hulls of several links and sensors are
 
 
 @dataclass

@@ -218,7 +218,11 @@ class SdfReader:
                 if found is not None and not text and found.find("link_name") is not None:
                     text = found.child_text("link_name", "")
                 ends.append(scope.link_of(text, element))
-            model.joints.append(Joint(prefix + element.get("name", ""), *ends, element.get("type", "") == "fixed"))
+            kind = element.get("type", "")
+            locked = kind in ("revolute", "prismatic") and not any(
+                element.number(f"axis/limit/{end}", math.inf) for end in ("lower", "upper")
+            )
+            model.joints.append(Joint(prefix + element.get("name", ""), *ends, kind == "fixed" or locked, locked))
         holders = [scope.element] + ([scope.include] if scope.include is not None else [])
         for holder in holders:
             for plugin in holder.all("plugin"):

@@ -101,7 +101,13 @@ def _place(root, model):
                  "a joint that was copied", "Remove one of them")
         origins[ends[1]] = _origin(element)
         children.setdefault(ends[0], []).append(ends[1])
-        model.joints.append(Joint(element.get("name", ""), *ends, element.get("type", "") == "fixed"))
+        kind, limit = element.get("type", ""), element.find("limit")
+        locked = (
+            kind in ("revolute", "prismatic")
+            and limit is not None
+            and not any(limit.attribute_numbers(end, 1, [0.0])[0] for end in ("lower", "upper"))
+        )
+        model.joints.append(Joint(element.get("name", ""), *ends, kind == "fixed" or locked, locked))
     roots = [name for name in model.links if name not in origins]
     if len(roots) != 1:
         fail(root.where, f"has {len(roots)} root links ({', '.join(roots) or 'each is the child of a joint'})",
