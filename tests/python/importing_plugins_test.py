@@ -184,6 +184,13 @@ class ConvertsHydrodynamics(ImportTestCase):
         linear = self.loads(text, model).body["drag"]["linear"]
         self.assertEqual([element(i, j, linear) for i, j in ((1, 1), (1, 5), (5, 1), (5, 5))], [4, 6, 6, 12])
 
+    def test_buoyancy_of_links_is_reported(self):
+        buoyancy = "<buoyancy><damping xyz='1 2 3'/></buoyancy>"
+        shape = "<collision><geometry><box size='1 1 1'/></geometry></collision>"
+        urdf = f"<robot name='vehicle'><link name='base'>{shape}{buoyancy}</link></robot>"
+        for text, name in ((sdf(link(inside=box() + buoyancy)), "boat.sdf"), (urdf, "boat.urdf")):
+            self.assertIn("- <buoyancy> of 'base', of freefloating_gazebo", self.import_model(text, name=name).output)
+
     def test_unknown_links_and_plugins_are_named(self):
         result = self.loads(
             plugin(GZ, xU=-1).replace(">base<", ">bow<")

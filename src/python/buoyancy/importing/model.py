@@ -54,6 +54,12 @@ class Link:
     has_sensor: bool = False
 
 
+def report_buoyancy(element, name, report):
+    """Reports what freefloating_gazebo reads from a link: an element that neither SDF nor URDF has."""
+    for child in element.all("buoyancy"):
+        report.leave_out(f"<buoyancy> of '{name}', of freefloating_gazebo: with its drag ({child.source})")
+
+
 @dataclass
 class Joint:
     name: str

@@ -7,7 +7,7 @@ import math
 
 from . import frames
 from .failure import ImportFailure, fail
-from .model import Geometry, Inertial, Joint, Link, Model, Plugin
+from .model import Geometry, Inertial, Joint, Link, Model, Plugin, report_buoyancy
 
 _MAX_INCLUDES = 16
 _ADDED_MASS_AXES = "xyzpqr"
@@ -245,6 +245,7 @@ class SdfReader:
         link.mass_from_geometry = inertial is not None and inertial.get("auto", "") in ("true", "1")
         if not link.mass_from_geometry:
             link.inertial = self._inertial(inertial, element, in_link)
+        report_buoyancy(element, name, self.report)
         density = None if inertial is None else inertial.number("density")
         for child in element.all("collision", "visual"):
             geometry = child.find("geometry")

@@ -1,7 +1,7 @@
 """Reads URDF. Its inertia has the order Ixx Ixy Ixz Iyy Iyz Izz; plugins are those of <gazebo> elements."""
 from . import frames
 from .failure import fail
-from .model import Geometry, Inertial, Joint, Link, Model, Plugin
+from .model import Geometry, Inertial, Joint, Link, Model, Plugin, report_buoyancy
 
 
 def read_urdf(root, report):
@@ -54,6 +54,7 @@ def _link(element, name, report):
             ],
             inertial.source,
         )
+    report_buoyancy(element, name, report)
     for child in element.all("collision", "visual"):
         geometry = child.find("geometry")
         shape = None if geometry is None else next(iter(geometry.children), None)
