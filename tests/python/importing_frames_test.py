@@ -91,6 +91,16 @@ class ImportsFramesOfSdf(ImportTestCase):
         part = self.import_model(sdf(link() + include + fixed("base", "hand")), files=files).body["part"][1]
         self.assert_numbers(part["position"], [0, 1, 1])
 
+    def test_merged_include_of_merged_include_keeps_names(self):
+        merge = "<include merge='true'><uri>model://{}</uri>" + pose("0 1 0 0 0 0") + "</include>"
+        files = {
+            "hand/model.sdf": sdf(link("hand", inertial(1) + box("palm"), pose("0 0 1 0 0 0"))),
+            "arm/model.sdf": sdf(merge.format("hand")),
+        }
+        text = sdf(link() + merge.format("arm") + fixed("base", "hand"))
+        part = self.import_model(text, files=files).body["part"][1]
+        self.assert_numbers(part["position"], [0, 2, 1])
+
     def test_cycles_and_unknown_frames_are_refused(self):
         cycle = (
             "<frame name='a'>" + pose("0 0 0 0 0 0", relative_to="b") + "</frame>"

@@ -51,7 +51,7 @@ class _Scope:
         if first in self.models and not self.models[first].merged:
             return self.models[first], rest
         for scope in self.models.values():
-            if scope.merged and (first in scope.entries or first in scope.models):
+            if scope.merged and (first in scope.entries or first in scope.models or scope.nested(name)[0]):
                 return scope, name
         return None, ""
 
