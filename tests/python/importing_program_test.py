@@ -46,6 +46,21 @@ class ImportsGeometry(ImportTestCase):
             )
             self.assertEqual(result.body["part"][0]["mesh"]["file"], "models/boat/hull.obj")
 
+    def test_files_of_fuel_are_searched_in_its_folders(self):
+        url = "https://fuel.gazebosim.org/1.0/Owner/models/My Boat"
+        cache = "fuel/fuel.gazebosim.org/owner/models/my boat"
+        os.environ["GZ_FUEL_CACHE_PATH"] = str(self.folder / "fuel")
+        self.addCleanup(os.environ.pop, "GZ_FUEL_CACHE_PATH")
+        text = sdf(link(inside=mesh(f"{url}/2/files/meshes/hull.obj") + inertial()))
+        included = f"<sdf version='1.9'><world name='w'><include><uri>{url}</uri></include></world></sdf>"
+        self.assert_refused(included, f"gz fuel download -u '{url}'", "/owner/models. ")
+        # The newest version comes first, and a folder beside the model before those of the cache.
+        for root in (f"{cache}/9", f"{cache}/10", "My Boat"):
+            files = {f"{root}/meshes/hull.obj": BOX_OBJ, f"{root}/model.sdf": sdf(link(root[-2:]))}
+            result = self.import_model(text, files=files)
+            self.assertEqual(result.body["part"][0]["mesh"]["file"], f"{root}/meshes/hull.obj")
+            self.assertIn(f"its frame is that of the link '{root[-2:]}'", self.import_model(included, name="w.sdf").text)
+
     def test_missing_mesh_names_places(self):
         text = sdf(link(inside=mesh("model://boat/hull.obj") + inertial()))
         self.assert_refused(
@@ -193,7 +208,8 @@ class RefusesBrokenModels(ImportTestCase):
         self.assert_refused(text, "two equal points", name="vehicle.xml")
 
     def test_uri_that_no_file_system_holds(self):
-        self.assert_refused(sdf(link(inside=mesh("a" * 5000))), "is not found")
+        for start in ("", "https://fuel.gazebosim.org/1.0/owner/models/"):
+            self.assert_refused(sdf(link(inside=mesh(start + "a" * 5000))), "is not found")
 
     def test_joint_of_unknown_link(self):
         self.assert_refused(sdf(link() + fixed("base", "mast")), "'mast'")
