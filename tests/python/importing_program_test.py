@@ -42,7 +42,9 @@ class ImportsGeometry(ImportTestCase):
     def test_other_schemes_are_searched_like_models(self):
         for uri in ("model://boat/hull.obj", "models://boat/hull.obj"):
             result = self.import_model(
-                sdf(link(inside=mesh(uri) + inertial())), name="worlds/boat.sdf", files={"models/boat/hull.obj": BOX_OBJ}
+                sdf(link(inside=mesh(uri) + inertial())),
+                name="worlds/boat.sdf",
+                files={"models/boat/hull.obj": BOX_OBJ},
             )
             self.assertEqual(result.body["part"][0]["mesh"]["file"], "models/boat/hull.obj")
 
@@ -59,7 +61,8 @@ class ImportsGeometry(ImportTestCase):
             files = {f"{root}/meshes/hull.obj": BOX_OBJ, f"{root}/model.sdf": sdf(link(root[-2:]))}
             result = self.import_model(text, files=files)
             self.assertEqual(result.body["part"][0]["mesh"]["file"], f"{root}/meshes/hull.obj")
-            self.assertIn(f"its frame is that of the link '{root[-2:]}'", self.import_model(included, name="w.sdf").text)
+            scene = self.import_model(included, name="w.sdf").text
+            self.assertIn(f"its frame is that of the link '{root[-2:]}'", scene)
 
     def test_missing_mesh_names_places(self):
         text = sdf(link(inside=mesh("model://boat/hull.obj") + inertial()))
@@ -135,6 +138,12 @@ class ImportsGeometry(ImportTestCase):
         result = self.import_model(text, files={"hull.obj": open_box})
         self.assertEqual(result.body["part"][0]["close_holes"], 0.01)
         self.assertIn("close_holes = 0.01 closes its holes", result.output)
+        closed = mesh("box.obj", name="box", pose="<pose>9 0 0 0 0 0</pose>")
+        text = sdf(link(inside=mesh("hull.obj") + closed + inertial()))
+        self.assert_refused(text, "boundary edges", "--close-holes SHARE", files={"box.obj": BOX_OBJ})
+        result = self.import_model(text, "--close-holes", "2")
+        self.assertEqual([part.get("close_holes") for part in result.body["part"]], [2, None])
+        self.assertIn("warning: mesh 'hull.obj' is not closed: close_holes = 2.0 closes its holes", result.output)
 
     def test_axis_up_of_collada_is_a_note(self):
         # A tetrahedron with y up in its file: Gazebo takes its coordinates as they are.
@@ -143,7 +152,8 @@ class ImportsGeometry(ImportTestCase):
             "<technique_common><accessor source='#a' count='4' stride='3'><param name='X' type='float'/>"
             "<param name='Y' type='float'/><param name='Z' type='float'/></accessor></technique_common></source>"
             "<vertices id='v'><input semantic='POSITION' source='#p'/></vertices><triangles count='4'>"
-            "<input semantic='VERTEX' source='#v' offset='0'/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles></mesh></geometry>"
+            "<input semantic='VERTEX' source='#v' offset='0'/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles></mesh>"
+            "</geometry>"
         )
         collada = (
             "<COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'><asset>"

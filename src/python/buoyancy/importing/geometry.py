@@ -191,8 +191,7 @@ class PartMaker:
             if part.contents:
                 path = Path(folder) / ("submesh" + part.suffix)
                 path.write_text(part.contents, encoding="utf-8")
-            attempts = [self.close_holes] if self.close_holes is not None else [None, _HOLES]
-            for close_holes in attempts:
+            for close_holes in (None, _HOLES if self.close_holes is None else self.close_holes):
                 try:
                     with warnings.catch_warnings(record=True) as caught:
                         warnings.simplefilter("always")
@@ -211,7 +210,7 @@ class PartMaker:
                 f"mesh '{part.file.name}' has another axis than z up in its file: its coordinates are used as they "
                 "are, as Gazebo does"
             )
-        if close_holes is not None and close_holes != self.close_holes:
+        if close_holes is not None:
             self.report.warn(
                 f"mesh '{part.file.name}' is not closed: close_holes = {close_holes} closes its holes; "
                 f"its volume is then {mesh.volume:.6g} m^3"
