@@ -331,6 +331,13 @@ class ImportsMjcf(ImportTestCase):
         for words in ("density = 1000", "viscosity = 0.001", 'fluidshape = "ellipsoid"'):
             self.assertIn(words, result.output)
 
+    def test_body_of_several_needs_a_name(self):
+        body = "<body {}><freejoint/><geom type='box' size='1 1 1'/></body>"
+        named = body.format("name='b'")
+        model = f"<mujoco><worldbody>{body.format('')}{named}</worldbody></mujoco>"
+        self.assert_refused(model, "2 bodies to choose from (one without a name, b.xml:1, 'b')", name="b.xml")
+        self.assertEqual(self.import_model(model, "--model", "b", name="b.xml").body["name"], "b")
+
     def test_what_holds_the_vehicle_is_reported(self):
         model = """<mujoco><option><flag gravity='disable'/></option><default><joint type='{}'/></default><worldbody>
           <body name='b'>{}<geom type='box' size='1 1 1'/></body></worldbody>

@@ -34,9 +34,13 @@ class MjcfReader:
         moving = [top for top in tops if top[0].all(*_JOINTS)]
         chosen = [top for top in tops if top[0].get("name") == model_name] if model_name else (moving or tops)
         if len(chosen) != 1:
-            names = ", ".join(f"'{top[0].get('name', '')}'" for top in moving or tops) or "none"
+            names = ", ".join(
+                f"'{top[0].get('name')}'" if top[0].get("name") else f"one without a name, {top[0].source}"
+                for top in moving or tops
+            ) or "none"
             fail(root.where, f"has {len(chosen)} bodies to choose from ({names})", "one body of <worldbody>",
-                 "a scene of several vehicles, or a misspelt name", "Choose one with --model NAME")
+                 "a scene of several vehicles, or a misspelt name",
+                 "Choose one with --model NAME, and name it first if it has no name")
         body, pose, childclass = chosen[0]
         model = Model(body.get("name") or root.get("model", "vehicle"), body.source, "MJCF")
         self._read_body(body, "", frames.IDENTITY, childclass, model)
