@@ -230,6 +230,17 @@ class GroupsLinksIntoBodies(ImportTestCase):
                 self.assertEqual(len(self.import_model(model.format(*ends), name=name).bodies), 2)
         self.assertEqual(len(self.import_model(sdf_model).bodies), 2)
 
+    def test_detachable_link_is_fixed(self):
+        plugin = (
+            "<plugin filename='gz-sim-detachable-joint-system' name='gz::sim::systems::DetachableJoint'>"
+            "<parent_link>base</parent_link><child_model>{}</child_model><child_link>weight</child_link></plugin>"
+        )
+        model = link() + link("weight", inertial(20))
+        result = self.import_model(sdf(model + plugin.format("__model__")))
+        self.assertEqual(result.body["client"]["mass"], 520)
+        self.assertIn("note: link 'weight' is fixed to 'base', until it is dropped", result.output)
+        self.assertEqual(self.import_model(sdf(model + plugin.format("tow"))).body["client"]["mass"], 500)
+
     def test_specks_have_no_volume(self):
         speck = link("depth", box("speck", "1e-6 1e-6 1e-6") + inertial(0.01))
         result = self.import_model(sdf(link() + speck + fixed("base", "depth", "revolute")))

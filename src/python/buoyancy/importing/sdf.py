@@ -164,6 +164,7 @@ class SdfReader:
             self.report.note(f"the model is static: it is free in the scene ({element.source})")
         self._flatten(scope, frames.IDENTITY, model)
         model.canonical = scope.canonical(element)
+        self._join_detachable(model)
         if world is not None:
             model.plugins += [Plugin(p.get("name", ""), p.get("filename", ""), p) for p in world.all("plugin")]
             gravity = world.find("gravity")
@@ -229,6 +230,17 @@ class SdfReader:
                 model.plugins.append(Plugin(plugin.get("name", ""), plugin.get("filename", ""), plugin, prefix))
         for inner in scope.models.values():
             self._flatten(inner, frames.compose(pose, inner.model_pose()), model)
+
+    def _join_detachable(self, model):
+        """Adds the joints that a plugin makes at the start, within the model, such as that of a drop weight."""
+        for plugin in model.plugins:
+            element = plugin.element
+            if "DetachableJoint" not in plugin.name or element.child_text("child_model") != "__model__":
+                continue
+            parent, child = (plugin.prefix + element.child_text(f"{end}_link", "") for end in ("parent", "child"))
+            if parent in model.links and child in model.links:
+                model.joints.append(Joint(f"DetachableJoint of {child}", parent, child, True))
+                self.report.note(f"link '{child}' is fixed to '{parent}', until it is dropped ({element.source})")
 
     def _link(self, scope, element, name, place, scope_pose):
         link = Link(name, place, element.source, has_sensor=bool(element.all("sensor")))
