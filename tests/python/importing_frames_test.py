@@ -241,6 +241,16 @@ class GroupsLinksIntoBodies(ImportTestCase):
         self.assertIn("note: link 'weight' is fixed to 'base', until it is dropped", result.output)
         self.assertEqual(self.import_model(sdf(model + plugin.format("tow"))).body["client"]["mass"], 500)
 
+    def test_links_that_plugins_drive_are_propellers(self):
+        names = ("gz::sim::systems::Thruster", "gz::sim::systems::MulticopterMotorModel", "gazebo_motor_model")
+        model = link() + link("t0", box("blade") + inertial(1)) + fixed("base", "t0", "revolute")
+        for name in names:
+            driven = f"<plugin name='{name}' filename='f'><jointName>base to t0</jointName></plugin>"
+            result = self.import_model(sdf(model + driven))
+            self.assertIn("'t0' (model.sdf:1), 1 kg: is a propeller", result.output)
+            self.assertIn(f"- thruster '{name}'", result.output)
+        self.assertEqual(len(self.import_model(sdf(model)).bodies), 2)
+
     def test_specks_have_no_volume(self):
         speck = link("depth", box("speck", "1e-6 1e-6 1e-6") + inertial(0.01))
         result = self.import_model(sdf(link() + speck + fixed("base", "depth", "revolute")))

@@ -15,7 +15,7 @@ _SENSOR = re.compile(
     r"sensor|camera|(^|_)imu|(^|_)gps|dvl|lidar|laser|sonar|altimeter|magnetometer|antenna|hydrophone", re.IGNORECASE
 )
 _MIN_VOLUME = 1e-9  # m^3: what is smaller stands for a link whose shape does not matter
-_THRUSTER_PLUGIN = re.compile(r"thrust", re.IGNORECASE)
+_THRUSTER_PLUGIN = re.compile(r"thrust|motor_?model", re.IGNORECASE)
 
 
 @dataclass

@@ -534,7 +534,7 @@ _SHAPES = {"sphere": _sphere, "cylinder": _cylinder, "box": _box}
 
 
 def _kind(names):
-    for pattern, kind in (("thrust|propeller", "thruster"), ("lift.?drag|fin_", "fin"), ("buoyancy.?engine", "tank")):
+    for pattern, kind in (("thrust|propeller|motor_?model", "thruster"), ("lift.?drag|fin_", "fin"), ("buoyancy.?engine", "tank")):
         if re.search(pattern, names, re.IGNORECASE):
             return kind
     return "plugin"
