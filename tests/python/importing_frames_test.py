@@ -226,7 +226,7 @@ class GroupsLinksIntoBodies(ImportTestCase):
             result = self.import_model(model.format(0, 0), name=name)
             self.assertEqual(len(result.bodies), 1)
             self.assertIn("note: joint 'base to bow' with limits of 0 and 0: fixed", result.output)
-            for ends in ((0, 1), (-1, 0)):
+            for ends in ((0, 1), (-1, 0), ("-inf", "inf")):
                 self.assertEqual(len(self.import_model(model.format(*ends), name=name).bodies), 2)
         self.assertEqual(len(self.import_model(sdf_model).bodies), 2)
 

@@ -60,6 +60,18 @@ def report_buoyancy(element, name, report):
         report.leave_out(f"<buoyancy> of '{name}', of freefloating_gazebo: with its drag ({child.source})")
 
 
+def is_locked(kind, lower="", upper=""):
+    """Whether a joint that could move has limits of 0 and 0; the limits are text, and may be -inf or missing."""
+
+    def is_zero(text):
+        try:
+            return float(text) == 0
+        except ValueError:
+            return False
+
+    return kind in ("revolute", "prismatic") and is_zero(lower) and is_zero(upper)
+
+
 @dataclass
 class Joint:
     name: str

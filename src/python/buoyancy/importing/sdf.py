@@ -7,7 +7,7 @@ import math
 
 from . import frames
 from .failure import ImportFailure, fail
-from .model import Geometry, Inertial, Joint, Link, Model, Plugin, report_buoyancy
+from .model import Geometry, Inertial, Joint, Link, Model, Plugin, is_locked, report_buoyancy
 
 _MAX_INCLUDES = 16
 _ADDED_MASS_AXES = "xyzpqr"
@@ -220,9 +220,7 @@ class SdfReader:
                     text = found.child_text("link_name", "")
                 ends.append(scope.link_of(text, element))
             kind = element.get("type", "")
-            locked = kind in ("revolute", "prismatic") and not any(
-                element.number(f"axis/limit/{end}", math.inf) for end in ("lower", "upper")
-            )
+            locked = is_locked(kind, *(element.child_text(f"axis/limit/{end}", "") for end in ("lower", "upper")))
             model.joints.append(Joint(prefix + element.get("name", ""), *ends, kind == "fixed" or locked, locked))
         holders = [scope.element] + ([scope.include] if scope.include is not None else [])
         for holder in holders:

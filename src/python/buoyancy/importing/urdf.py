@@ -1,7 +1,7 @@
 """Reads URDF. Its inertia has the order Ixx Ixy Ixz Iyy Iyz Izz; plugins are those of <gazebo> elements."""
 from . import frames
 from .failure import fail
-from .model import Geometry, Inertial, Joint, Link, Model, Plugin, report_buoyancy
+from .model import Geometry, Inertial, Joint, Link, Model, Plugin, is_locked, report_buoyancy
 
 
 def read_urdf(root, report):
@@ -103,11 +103,8 @@ def _place(root, model):
         origins[ends[1]] = _origin(element)
         children.setdefault(ends[0], []).append(ends[1])
         kind, limit = element.get("type", ""), element.find("limit")
-        locked = (
-            kind in ("revolute", "prismatic")
-            and limit is not None
-            and not any(limit.attribute_numbers(end, 1, [0.0])[0] for end in ("lower", "upper"))
-        )
+        limits = () if limit is None else (limit.get("lower", "0"), limit.get("upper", "0"))
+        locked = is_locked(kind, *limits)
         model.joints.append(Joint(element.get("name", ""), *ends, kind == "fixed" or locked, locked))
     roots = [name for name in model.links if name not in origins]
     if len(roots) != 1:
