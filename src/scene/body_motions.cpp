@@ -21,7 +21,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-constexpr double kNeutral = 1e-9;           // relative difference of mass and displaced mass
 constexpr double kHeaveAmplitude = 0.05;    // over the mesh's diagonal
 constexpr double kRotationAmplitude = 0.1;  // [rad]
 
@@ -308,7 +307,8 @@ std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh&
 
   const Displaced whole = loaded.submerged();
   const double displaced = water.density * whole.volume;  // [kg], of a closed mesh
-  const bool neutral = !mesh.is_open() && std::abs(displaced - rigid.mass) <= kNeutral * rigid.mass;
+  const bool neutral =
+      !mesh.is_open() && outcome_by_mass(rigid.mass, displaced) == FlotationOutcome::kNeutral;
   if (!neutral) {
     if (const std::optional<FloatingPose> floating = loaded.afloat(q_WB, water)) {
       motions.balance = VerticalBalance::kFloats;

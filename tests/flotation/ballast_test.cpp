@@ -81,11 +81,22 @@ TEST_F(BallastOfBoxShip, FindsThePositionOnALine) {
 
 TEST_F(BallastOfBoxShip, SubmergesWithTheCentreOfMassUnderTheMiddle) {
   const Ballast found = find({.target = {0.1, 0.2}, .mass = 11e6}).value();
-  EXPECT_TRUE(found.is_submerged);
+  EXPECT_EQ(found.outcome, FlotationOutcome::kSinks);
   EXPECT_GT(found.total_mass, found.displaced_mass);
   const Vec3 up = up_at({}, {0.1, 0.2});
   EXPECT_LT(found.center_of_mass_B.cross(up).norm(), 1e-12);
   EXPECT_NEAR(found.metacentric_heights[0], -found.center_of_mass_B.dot(up), 1e-12);
+}
+
+// The program equilibrium says sinks or neutrally buoyant of the same bodies.
+TEST_F(BallastOfBoxShip, DecidesLikeAnEquilibriumWhetherTheBodyFloats) {
+  const double neutral = kWater.density * ship_.mesh.volume - ship_.body.mass();
+  for (const double excess : {-1e-6, -1e-10, 0.0, 1e-10, 1e-6}) {
+    const double mass = neutral + excess * kWater.density * ship_.mesh.volume;
+    const Ballast found = find({.mass = mass}).value();
+    const FloatingBody result = loaded(ship_.body, found.mass_with_body, found.center_of_mass_B);
+    EXPECT_EQ(found.outcome, find_equilibria(result, kWater).outcome) << excess;
+  }
 }
 
 TEST_F(BallastOfBoxShip, RefusesWithWhatIsWrong) {
@@ -225,7 +236,7 @@ TEST_F(RandomBallast, GivesTheTargetOrARightRefusal) {
     const auto found = find_ballast(body, kWater, task);
     const Eigen::Quaterniond attitude = attitude_at(task.axes, task.target, kWater.up_W);
     const double lowest = lowest_along(body, up) + up.dot(body.center_B());
-    const double draft = free.is_submerged ? 3.0 * length : free.draft;
+    const double draft = free.is_submerged() ? 3.0 * length : free.draft;
     const Pose pose{.p_WB = (kWater.level - draft - lowest) * kWater.up_W, .q_WB = attitude};
     if (!found) {
       ++refused;
@@ -237,7 +248,7 @@ TEST_F(RandomBallast, GivesTheTargetOrARightRefusal) {
     const FloatingBody result = loaded(body, found->mass_with_body, found->center_of_mass_B);
     const FloatingState state = floating_state(result, pose, kWater).value();
     EXPECT_LE(state.torque_W.norm(), 1e-7 * result.total_mass() * kWater.gravity * length);
-    if (found->is_submerged) continue;
+    if (found->is_submerged()) continue;
     EXPECT_LE(state.force_W.norm(), 1e-9 * result.total_mass() * kWater.gravity);
     if (found->metacentric_heights[0] < 1e-3 * length) continue;
     ++compared;
