@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "flotation/equilibrium.h"
+#include "flotation/submerged.h"
 #include "tests/flotation/bodies.h"
 #include "tests/support/contains.h"
 
@@ -143,6 +143,18 @@ TEST_F(BallastOfBoxShip, CountsTheLiquidWhereItLiesAtTheTarget) {
   EXPECT_NEAR(at->angles.heel, target.heel, 1e-9);
   const double gm = at->state.hydrostatics.metacentric_heights[0];
   EXPECT_NEAR(found.metacentric_heights[0], gm, 1e-9 * std::abs(gm));
+
+  // Heavier than the water, it hangs at the same heel, and GM is what is left of BG.
+  const Ballast hung = find_ballast(body, kWater, {.target = target, .mass = 11e6}).value();
+  const FloatingBody heavy = loaded(body, hung.mass_with_body, hung.center_of_mass_B);
+  const SubmergedRest rest = submerged_rest(heavy, kWater).value();
+  EXPECT_NEAR(rest.angles.heel, target.heel, 1e-9);
+  EXPECT_NEAR(rest.angles.trim, 0.0, 1e-9);
+  const double buoyancy = hung.displaced_mass * kWater.gravity;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(rest.moments_per_degree[i], buoyancy * hung.metacentric_heights[i] * std::sin(kDegree),
+                1e-9 * rest.moments_per_degree[1]);
+  }
 }
 
 // Hulls of every kind at any attitude, whose ballast is free, at a place, on a line or split.
@@ -193,13 +205,14 @@ TEST_F(RandomBallast, GivesTheTargetOrARightRefusal) {
   int solved = 0;
   int refused = 0;
   int compared = 0;
+  int hung = 0;
   for (int n = 0; n < 1000; ++n) {
     SCOPED_TRACE(n);
     const HydrostaticMesh mesh = hull(n);
     const double length = mesh.diagonal;
     const FloatingBody body = body_of(mesh, uniform(0.05, 0.5), mesh.center_B + vector(0.1 * length));
     BallastTask task{.target = {uniform(-1.0, 1.0), uniform(-1.0, 1.0)},
-                     .mass = uniform(0.02, 0.55) * kWater.density * mesh.volume};
+                     .mass = uniform(0.02, 0.75) * kWater.density * mesh.volume};
     const Vec3 up = up_at(task.axes, task.target);
     const Ballast free = find_ballast(body, kWater, task).value();
     const Vec3 right = free.places[0].position_B - uniform(0.0, 0.5) * length * up;
@@ -248,9 +261,16 @@ TEST_F(RandomBallast, GivesTheTargetOrARightRefusal) {
     const FloatingBody result = loaded(body, found->mass_with_body, found->center_of_mass_B);
     const FloatingState state = floating_state(result, pose, kWater).value();
     EXPECT_LE(state.torque_W.norm(), 1e-7 * result.total_mass() * kWater.gravity * length);
-    if (found->is_submerged()) continue;
-    EXPECT_LE(state.force_W.norm(), 1e-9 * result.total_mass() * kWater.gravity);
+    if (!found->is_submerged()) {
+      EXPECT_LE(state.force_W.norm(), 1e-9 * result.total_mass() * kWater.gravity);
+    }
     if (found->metacentric_heights[0] < 1e-3 * length) continue;
+    if (found->is_submerged()) {
+      ++hung;
+      const SubmergedRest rest = submerged_rest(result, kWater, task.axes).value();
+      EXPECT_LE((up_at(task.axes, rest.angles) - up).norm(), 1e-6);
+      continue;
+    }
     ++compared;
     const Vec3 tilt = 1e-4 * vector(1.0);
     const Eigen::Quaterniond start(Eigen::Quaterniond(1.0, tilt.x(), tilt.y(), tilt.z()).normalized() *
@@ -263,6 +283,7 @@ TEST_F(RandomBallast, GivesTheTargetOrARightRefusal) {
   EXPECT_GT(solved, 500);
   EXPECT_GT(refused, 200);
   EXPECT_GT(compared, 300);
+  EXPECT_GT(hung, 30);
 }
 
 }  // namespace
