@@ -231,21 +231,6 @@ std::optional<NaturalMotions> natural_motions(const MotionMatrices& matrices, co
                         .pitch = motion(modes->pitch, 4, kRotationAmplitude)};
 }
 
-// Returns the velocity [m/s] along up of a submerged body whose buoyancy less its weight is `force` [N].
-std::optional<double> terminal_velocity_of(const Body& body, const Vec3& up_B, double force) {
-  if (force == 0.0) return 0.0;
-  if (body.hydrodynamics == nullptr || !body.hydrodynamics->coefficients().drag) return std::nullopt;
-  const DragCoefficients& drag = *body.hydrodynamics->coefficients().drag;
-  const double linear = up_B.dot(drag.linear.topLeftCorner<3, 3>() * up_B);
-  const double quadratic =
-      up_B.dot(drag.quadratic.topLeftCorner<3, 3>() * up_B.cwiseAbs().cwiseProduct(up_B));
-  // linear v + quadratic v^2 = |force|, in the form that does not cancel.
-  const double denominator = linear + std::sqrt(linear * linear + 4.0 * quadratic * std::abs(force));
-  const double speed = 2.0 * std::abs(force) / denominator;
-  if (!std::isfinite(speed)) return std::nullopt;
-  return std::copysign(speed, force);
-}
-
 // Lowers the step of `motions` to that of a state. Returns false where it is beyond double's range.
 bool limit_step(const MotionMatrices& matrices, const State& state, const Vec6& twist_B, StepLimit limit,
                 BodyMotions& motions) {
@@ -287,6 +272,20 @@ BodyKey key_of(const Body& body, const BodyKeys& keys, const RigidBodyMass& own)
 
 double NaturalMotion::period() const {
   return frequency > 0.0 ? 2.0 * std::numbers::pi / frequency : kInfinity;
+}
+
+std::optional<double> terminal_velocity_of(const Body& body, const Vec3& up_B, double force) {
+  if (force == 0.0) return 0.0;
+  if (body.hydrodynamics == nullptr || !body.hydrodynamics->coefficients().drag) return std::nullopt;
+  const DragCoefficients& drag = *body.hydrodynamics->coefficients().drag;
+  const double linear = up_B.dot(drag.linear.topLeftCorner<3, 3>() * up_B);
+  const double quadratic =
+      up_B.dot(drag.quadratic.topLeftCorner<3, 3>() * up_B.cwiseAbs().cwiseProduct(up_B));
+  // linear v + quadratic v^2 = |force|, in the form that does not cancel.
+  const double denominator = linear + std::sqrt(linear * linear + 4.0 * quadratic * std::abs(force));
+  const double speed = 2.0 * std::abs(force) / denominator;
+  if (!std::isfinite(speed)) return std::nullopt;
+  return std::copysign(speed, force);
 }
 
 std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh& mesh, const Water& water,
