@@ -200,9 +200,13 @@ std::string equilibria_page(const PageSubject& subject, const Equilibria& equili
   }
   rows.all = rows.group = rows.values.size();
   Json data = page_data(subject, "equilibrium", rows, equilibria_json(equilibria, {}, {}, submerged), true);
-  std::string text = equilibria.attitudes.empty() ? outcome_sentence(equilibria.outcome) : "";
-  if (submerged != nullptr) text += (text.empty() ? "" : " ") + submerged_text(*submerged);
-  data["outcome_text"] = text;
+  std::string text;
+  if (equilibria.attitudes.empty()) text = outcome_sentence(equilibria.outcome);
+  if (submerged != nullptr) {
+    if (!text.empty()) text += ' ';
+    text += submerged_text(*submerged);
+  }
+  if (!text.empty()) data["outcome_text"] = text;
   return page_of(data, three);
 }
 
