@@ -1,5 +1,6 @@
 // buoyancy-hydrostatics: the program around equilibria, righting arms, ballast, and tables of hulls, tanks
 // and permissible KG.
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "base/text_file.h"
 #include "cli/command_line.h"
 #include "cli/progress_bar.h"
+#include "scene/body_motions.h"
 #include "scene/mesh_warnings.h"
 #include "service/hydrostatics/ballast_results.h"
 #include "service/hydrostatics/hydrostatics_options.h"
@@ -65,6 +67,18 @@ double keel_of(const LoadedBody& loaded, const HydrostaticsPlan& plan) {
   return plan.table.keel.value_or(lowest_along(loaded.body, up_B) + up_B.dot(loaded.body.center_B()));
 }
 
+SubmergedResult submerged_result(const LoadedBody& loaded, const ShipAxes& axes) {
+  const Water& water = loaded.water();
+  SubmergedResult result{submerged_rest(loaded.body, water, axes), std::nullopt};
+  if (!result.rest) return result;
+  const Vec3 up_B = result.rest->q_WB.conjugate() * water.up_W;
+  const bool hovers = result.rest->motion == VerticalMotion::kHovers;
+  result.terminal_speed =
+      terminal_velocity_of(*loaded.scene_body, up_B, hovers ? 0.0 : -result.rest->net_weight);
+  if (result.terminal_speed) *result.terminal_speed = std::abs(*result.terminal_speed);
+  return result;
+}
+
 // three: the text of three.js for the page, empty if no page is requested.
 Output equilibrium_output(const LoadedBody& loaded, const HydrostaticsOptions& options,
                           const HydrostaticsPlan& plan, const std::string& three) {
@@ -88,10 +102,15 @@ Output equilibrium_output(const LoadedBody& loaded, const HydrostaticsOptions& o
     points.rows.push_back(readings(points.points, search.axes, keel, up_B, height));
     if (loaded.shares) parts.rows.push_back(displaced_parts(loaded.shares->body, at.pose, water));
   }
-  return {options.json ? json_lines(equilibria_json(found, points, parts))
-                       : equilibria_text(found, points, parts),
+  const bool goes_under =
+      found.outcome == FlotationOutcome::kSinks || found.outcome == FlotationOutcome::kNeutral;
+  std::optional<SubmergedResult> result;
+  if (goes_under || options.submerged) result = submerged_result(loaded, search.axes);
+  const SubmergedResult* submerged = result ? &*result : nullptr;
+  return {options.json ? json_lines(equilibria_json(found, points, parts, submerged))
+                       : equilibria_text(found, points, parts, submerged),
           equilibria_csv(found, points),
-          three.empty() ? "" : equilibria_page(page_subject(loaded, plan), found, three)};
+          three.empty() ? "" : equilibria_page(page_subject(loaded, plan), found, submerged, three)};
 }
 
 Expected<Output> table_output(const LoadedBody& loaded, const HydrostaticsOptions& options,

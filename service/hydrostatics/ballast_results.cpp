@@ -1,7 +1,5 @@
 #include "service/hydrostatics/ballast_results.h"
 
-#include <cmath>
-
 #include <spdlog/fmt/fmt.h>
 
 #include "base/format.h"
@@ -10,17 +8,9 @@
 namespace buoyancy::service {
 namespace {
 
-constexpr double kNeutral = 1e-9;  // as FlotationOutcome::kNeutral
-
-std::string_view outcome(const Ballast& ballast) {
-  if (!ballast.is_submerged) return "floats";
-  const double excess = ballast.total_mass - ballast.displaced_mass;
-  return std::abs(excess) <= kNeutral * ballast.displaced_mass ? "neutrally_buoyant" : "sinks";
-}
-
 std::string depth_sentence(const Ballast& ballast) {
-  if (!ballast.is_submerged) return fmt::format("The body floats with a draft of {:.6g} m.", ballast.draft);
-  if (outcome(ballast) == "neutrally_buoyant") return "The body hangs in the water, neutrally buoyant.";
+  if (!ballast.is_submerged()) return fmt::format("The body floats with a draft of {:.6g} m.", ballast.draft);
+  if (ballast.outcome == FlotationOutcome::kNeutral) return "The body hangs in the water, neutrally buoyant.";
   return fmt::format("The body sinks: it weighs {:.6g} kg more than the water that it displaces.",
                      ballast.total_mass - ballast.displaced_mass);
 }
@@ -55,8 +45,8 @@ Json ballast_json(const Ballast& ballast) {
     places.push_back({{"mass", place.mass}, {"position", place.position_B}});
   }
   Json json{{"ballast", std::move(places)},
-            {"outcome", outcome(ballast)},
-            {"draft", ballast.is_submerged ? Json(nullptr) : Json(ballast.draft)},
+            {"outcome", to_string(ballast.outcome)},
+            {"draft", ballast.is_submerged() ? Json(nullptr) : Json(ballast.draft)},
             {"stable", ballast.is_stable()},
             {"metacentric_heights", ballast.metacentric_heights},
             {"stability_limit", nullptr},

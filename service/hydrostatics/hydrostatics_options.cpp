@@ -60,6 +60,7 @@ Expected<void> check_command_options(const CLI::App& app, HydrostaticsCommand co
     std::vector<HydrostaticsCommand> commands;
   };
   const std::vector<Use> uses{{"--unstable", {kEquilibrium}},
+                              {"--submerged", {kEquilibrium}},
                               {"--draft", {kTable, kBallast, kKgLimit}},
                               {"--heel", {kRightingArms, kBallast, kTanks}},
                               {"--fixed-trim", {kRightingArms, kKgLimit}},
@@ -373,6 +374,8 @@ void add_options(CLI::App& app, HydrostaticsOptions& options) {
                  "Along the forward axis, m (default: the forward end of the mesh)")
       ->option_text("X");
   app.add_flag("--unstable", options.unstable, "equilibrium: also report unstable attitudes");
+  app.add_flag("--submerged", options.submerged,
+               "equilibrium: also report how a body that floats rests, and rises, fully submerged");
   app.add_option("--draft", options.drafts,
                  "table, kg-limit: drafts over the keel at midship, m; ballast: draft of the lowest point")
       ->option_text("FROM:TO:STEP");

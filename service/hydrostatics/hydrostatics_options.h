@@ -38,6 +38,7 @@ struct HydrostaticsOptions {
   std::optional<double> aft_perpendicular;      // [m]
   std::optional<double> forward_perpendicular;  // [m]
   bool unstable = false;
+  bool submerged = false;
   std::string drafts;  // FROM:TO:STEP
   std::string trims = "0";
   std::string heels = "-180:180:5";

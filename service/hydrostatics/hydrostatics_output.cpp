@@ -227,6 +227,20 @@ std::string immersions_text(const char* name, const std::optional<FirstImmersion
   return text;
 }
 
+Json submerged_json(const SubmergedResult& submerged) {
+  if (!submerged.rest) return nullptr;
+  const SubmergedRest& rest = *submerged.rest;
+  return {{"quaternion_wxyz", rest.q_WB},
+          {"heel", degrees(rest.angles.heel)},
+          {"trim", degrees(rest.angles.trim)},
+          {"family", to_string(rest.family)},
+          {"bg", rest.bg},
+          {"righting_moment_per_degree", rest.moments_per_degree},
+          {"net_weight", rest.net_weight},
+          {"motion", to_string(rest.motion)},
+          {"terminal_speed", submerged.terminal_speed}};
+}
+
 std::optional<double> in_degrees(std::optional<double> radians) {
   if (radians) *radians = degrees(*radians);
   return radians;
@@ -234,9 +248,35 @@ std::optional<double> in_degrees(std::optional<double> radians) {
 
 }  // namespace
 
-std::string equilibria_text(const Equilibria& equilibria, const PointRows& points, const PartRows& parts) {
+std::string submerged_text(const SubmergedResult& submerged) {
+  if (!submerged.rest) {
+    return "Fully submerged: no result, since the mesh is open, displaces nothing, or its numbers are out of "
+           "range.\n";
+  }
+  const SubmergedRest& rest = *submerged.rest;
+  std::string text = "Fully submerged it rests ";
+  if (rest.family == AttitudeFamily::kSphere) {
+    text += "in any attitude: its centre of mass is at that of buoyancy.\n";
+  } else {
+    const auto shown = [](double radians) { return std::round(1e4 * degrees(radians)) / 1e4 + 0.0; };
+    const auto& [smaller, larger] = rest.moments_per_degree;
+    text += fmt::format("at a heel of {:.4f} and a trim of {:.4f} degrees, BG {:.5g} m.\n",
+                        shown(rest.angles.heel), shown(rest.angles.trim), rest.bg);
+    text += fmt::format("Righting moment per degree: {:.5g} N m", smaller);
+    if (larger - smaller > 1e-9 * larger) text += fmt::format(" and {:.5g} N m, about two axes", larger);
+    text += ".\n";
+  }
+  text += fmt::format("Net weight {:.6g} N: it {}", rest.net_weight, to_string(rest.motion));
+  if (rest.motion == VerticalMotion::kHovers) return text + ".\n";
+  if (!submerged.terminal_speed) return text + ", ever faster, since no drag is given.\n";
+  return text + fmt::format(" at {:.4g} m/s.\n", *submerged.terminal_speed);
+}
+
+std::string equilibria_text(const Equilibria& equilibria, const PointRows& points, const PartRows& parts,
+                            const SubmergedResult* submerged) {
+  const std::string under_water = submerged ? submerged_text(*submerged) : "";
   std::string text = outcome_sentence(equilibria.outcome) + "\n";
-  if (equilibria.attitudes.empty()) return text;
+  if (equilibria.attitudes.empty()) return text + under_water;
   text += fmt::format("{:>10}{:>12}{:>12}{:>12}{:>12}{:>12}{:>16}{:>14}{:>14}\n", "", "heel, deg",
                       "trim, deg", "draft, m", "GM, m", "GM, m", "energy, J", "force/bound", "torque/bound");
   for (std::size_t row = 0; row < equilibria.attitudes.size(); ++row) {
@@ -256,10 +296,11 @@ std::string equilibria_text(const Equilibria& equilibria, const PointRows& point
   std::vector<double> heels;
   for (const Equilibrium& at : equilibria.attitudes) heels.push_back(degrees(at.angles.heel));
   text += points_text(points, "heel, deg", heels);
-  return text;
+  return text + under_water;
 }
 
-Json equilibria_json(const Equilibria& equilibria, const PointRows& points, const PartRows& parts) {
+Json equilibria_json(const Equilibria& equilibria, const PointRows& points, const PartRows& parts,
+                     const SubmergedResult* submerged) {
   Json attitudes = Json::array();
   for (std::size_t row = 0; row < equilibria.attitudes.size(); ++row) {
     const Equilibrium& at = equilibria.attitudes[row];
@@ -283,9 +324,11 @@ Json equilibria_json(const Equilibria& equilibria, const PointRows& points, cons
     if (!parts.rows.empty()) entry["parts"] = parts_json(parts, row);
     attitudes.push_back(std::move(entry));
   }
-  return {{"outcome", to_string(equilibria.outcome)},
-          {"attitudes", std::move(attitudes)},
-          {"truncated", equilibria.is_truncated}};
+  Json json{{"outcome", to_string(equilibria.outcome)},
+            {"attitudes", std::move(attitudes)},
+            {"truncated", equilibria.is_truncated}};
+  if (submerged != nullptr) json["submerged"] = submerged_json(*submerged);
+  return json;
 }
 
 std::string equilibria_csv(const Equilibria& equilibria, const PointRows& points) {

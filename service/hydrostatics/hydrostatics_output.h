@@ -2,6 +2,7 @@
 // tonnes, everything else in SI units.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "flotation/displaced_parts.h"
 #include "flotation/equilibrium.h"
 #include "flotation/hydrostatic_table.h"
+#include "flotation/submerged.h"
 #include "service/hydrostatics/righting_results.h"
 #include "service/hydrostatics/water_points.h"
 
@@ -35,8 +37,20 @@ struct PartRows {
   std::vector<std::vector<DisplacedPart>> rows;
 };
 
-std::string equilibria_text(const Equilibria& equilibria, const PointRows& points, const PartRows& parts);
-Json equilibria_json(const Equilibria& equilibria, const PointRows& points, const PartRows& parts);
+// How a body rests and moves fully submerged.
+struct SubmergedResult {
+  std::optional<SubmergedRest> rest;     // nullopt: see submerged_rest()
+  std::optional<double> terminal_speed;  // [m/s], through the water; nullopt: no drag holds the body
+};
+
+std::string submerged_text(
+    const SubmergedResult& submerged);  // three lines, or one that says why there are none
+
+// submerged: nullptr leaves it out.
+std::string equilibria_text(const Equilibria& equilibria, const PointRows& points, const PartRows& parts,
+                            const SubmergedResult* submerged = nullptr);
+Json equilibria_json(const Equilibria& equilibria, const PointRows& points, const PartRows& parts,
+                     const SubmergedResult* submerged = nullptr);
 std::string equilibria_csv(const Equilibria& equilibria, const PointRows& points);
 
 using TableRows = std::vector<HydrostaticRow>;

@@ -191,7 +191,7 @@ Json rests_json(const PageSubject& subject, const RightingResults& results,
 }  // namespace
 
 std::string equilibria_page(const PageSubject& subject, const Equilibria& equilibria,
-                            std::string_view three) {
+                            const SubmergedResult* submerged, std::string_view three) {
   PageRows rows;
   rows.columns = {kHeel, kTrim, kDraft};
   for (const Equilibrium& at : equilibria.attitudes) {
@@ -199,8 +199,14 @@ std::string equilibria_page(const PageSubject& subject, const Equilibria& equili
     rows.states.push_back(state_at(subject, at.pose));
   }
   rows.all = rows.group = rows.values.size();
-  Json data = page_data(subject, "equilibrium", rows, equilibria_json(equilibria, {}, {}), true);
-  if (equilibria.attitudes.empty()) data["outcome_text"] = outcome_sentence(equilibria.outcome);
+  Json data = page_data(subject, "equilibrium", rows, equilibria_json(equilibria, {}, {}, submerged), true);
+  std::string text;
+  if (equilibria.attitudes.empty()) text = outcome_sentence(equilibria.outcome);
+  if (submerged != nullptr) {
+    if (!text.empty()) text += ' ';
+    text += submerged_text(*submerged);
+  }
+  if (!text.empty()) data["outcome_text"] = text;
   return page_of(data, three);
 }
 

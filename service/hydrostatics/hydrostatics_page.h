@@ -35,9 +35,10 @@ struct PageSubject {
 //                  softer axis [m]; B: centre of mass with the liquids [m]. NaN where there is none
 //   "rests"        of righting arms: {"heel", "trim" [degrees], "draft" [m], "state"} where the body rests
 //   "results"      as --json prints them, without rows and points
-//   "outcome_text" of equilibria that are not there, else empty
+//   "outcome_text" of equilibria that are not there and of the body fully submerged, else empty
 // Complexity: O(triangles) and one query of hydrostatics per row.
-std::string equilibria_page(const PageSubject& subject, const Equilibria& equilibria, std::string_view three);
+std::string equilibria_page(const PageSubject& subject, const Equilibria& equilibria,
+                            const SubmergedResult* submerged, std::string_view three);
 std::string righting_page(const PageSubject& subject, const RightingResults& results,
                           const RightingArmOptions& options, std::string_view three);
 // rows: those of each trim after the other, each with as many drafts.

@@ -116,9 +116,8 @@ Expected<LoadedBody> load_body(LoadedScene loaded, const HydrostaticsPlan& plan)
                "mass or density in [body.client]", "without them a body has half the density of the water",
                "Set one of them to what the body weighs"};
   }
-  return LoadedBody{std::move(loaded.name), std::move(loaded.scene), std::move(mesh),
-                    *std::move(floating),   *std::move(shares),      uses_mass,
-                    std::move(assumed)};
+  return LoadedBody{std::move(loaded.name), std::move(loaded.scene), loaded.body, std::move(mesh),
+                    *std::move(floating),   *std::move(shares),      uses_mass,   std::move(assumed)};
 }
 
 }  // namespace buoyancy::service

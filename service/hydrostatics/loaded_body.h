@@ -36,6 +36,7 @@ struct BodyShares {
 struct LoadedBody {
   std::string name;  // of the scene's file and the body, or of the mesh's file
   Scene scene;
+  const Body* scene_body = nullptr;             // of `scene`, also after a move
   std::shared_ptr<const HydrostaticMesh> mesh;  // with its tree
   FloatingBody body;                            // of `mesh`
   std::optional<BodyShares> shares = {};        // of the command equilibrium

@@ -47,7 +47,14 @@ struct EnergyCurvature {
 
 class Balance {
  public:
-  Balance(const FloatingBody& body, const Water& water);
+  Balance(const FloatingBody& body, const Water& water) : Balance(body, water, std::nullopt) {}
+
+  // The balance of a body that is fully submerged at every attitude, as in water of its own mean density:
+  // there it is neutrally buoyant, so that only the torque about the centre of all mass is left. With C the
+  // centre of buoyancy, Q = m (G - C). body: no open mesh, of a volume above 0.
+  static Balance submerged(const FloatingBody& body, const Water& water) {
+    return {body, water, body.total_mass() / body.volume()};
+  }
 
   // Finds the height at which the body displaces its mass. guess: an attitude nearby, or nullptr. slack:
   // [m^3], the allowed error of the volume. Height and moments are corrected for this error to first order,
@@ -71,12 +78,16 @@ class Balance {
   double curvature_rounding() const { return curvature_rounding_; }  // [kg m]
 
  private:
+  // submerged_density: [kg/m^3], of the water in which the body is neutrally buoyant; nullopt: it floats.
+  Balance(const FloatingBody& body, const Water& water, std::optional<double> submerged_density);
   BalancedAttitude balanced(const Vec3& up_B, double height, const DisplacedSum& displaced) const;
   // Corrects an attitude for its excess by raising it by excess / area, unless that is far.
   void settle(BalancedAttitude& attitude, double area, const Vec3& pivot) const;
 
   const FloatingBody* body_;
   const Water* water_;
+  bool is_submerged_;
+  double density_;  // [kg/m^3]
   double target_volume_;
   double energy_rounding_;
   double gradient_rounding_;

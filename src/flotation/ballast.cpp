@@ -62,7 +62,7 @@ struct Depth {
   double mass = 0.0;       // [kg], of the ballast
   WaterPlane plane;        // about center_B
   DisplacedSum displaced;  // of that plane
-  bool is_submerged = false;
+  FlotationOutcome outcome = FlotationOutcome::kFloats;
 };
 
 // The draft's plane: it decides the mass.
@@ -104,8 +104,8 @@ Expected<Depth> depth_with_mass(const FloatingBody& body, const Water& water, do
   if (!loaded) return tl::unexpected(loaded.error());
   Depth depth;
   depth.mass = mass;
-  depth.is_submerged = !body.is_open() && loaded->total_mass() >= water.density * body.volume();
-  if (depth.is_submerged) {
+  depth.outcome = outcome_by_mass(*loaded, water);
+  if (depth.outcome != FlotationOutcome::kFloats) {
     depth.plane = {.up_B = up_B, .h_c = 2.0 * body.reach()};
   } else {
     const std::optional<BalancedAttitude> at = Balance(*loaded, water).at(up_B);
@@ -166,8 +166,8 @@ Expected<Ballast> find_ballast(const FloatingBody& body, const Water& water, con
   result.mass_with_body = body.mass() + depth->mass;
   result.total_mass = body.total_mass() + depth->mass;
   result.displaced_mass = water.density * depth->displaced.volume;
-  result.is_submerged = depth->is_submerged;
-  if (!depth->is_submerged) result.draft = depth->plane.h_c - lowest_along(body, k);
+  result.outcome = depth->outcome;
+  if (!result.is_submerged()) result.draft = depth->plane.h_c - lowest_along(body, k);
 
   // About center_B: the moment that the ballast must have, but for its part along k.
   const Vec3 without = mass_moment(body, liquid_sum(body, k, FreeSurfaces::kNo));

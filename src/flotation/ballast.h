@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "flotation/equilibrium.h"
 #include "flotation/floating_body.h"
 #include "flotation/ship_axes.h"
 
@@ -39,8 +40,8 @@ struct Ballast {
   Vec3 center_of_mass_B = Vec3::Zero();  // [m], of that mass
   double total_mass = 0.0;               // [kg], with liquids
   double displaced_mass = 0.0;           // [kg], of the water
-  bool is_submerged = false;
-  double draft = 0.0;  // [m]; 0 of a submerged body
+  FlotationOutcome outcome = FlotationOutcome::kFloats;  // kFloats, kSinks or kNeutral
+  double draft = 0.0;                                    // [m]; 0 of a submerged body
   // [m], principal metacentric heights, ascending, free surfaces of tanks included; the target is stable if
   // both are above 0. The axes are those about which the body turns, unit, B.
   std::array<double, 2> metacentric_heights{};
@@ -49,6 +50,7 @@ struct Ballast {
   std::optional<Vec3> stability_limit_B;
   bool is_in_box = true;  // every place with mass is in the bounding box of the hull, in B
 
+  bool is_submerged() const { return outcome != FlotationOutcome::kFloats; }
   bool is_stable() const { return metacentric_heights[0] > 0.0; }
 };
 

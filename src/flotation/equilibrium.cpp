@@ -313,10 +313,13 @@ std::string_view to_string(AttitudeFamily family) {
 }
 
 FlotationOutcome outcome_by_mass(const FloatingBody& body, const Water& water) {
-  const double displaced = water.density * body.volume();
   if (body.is_open()) return FlotationOutcome::kFloats;
-  if (std::abs(body.total_mass() - displaced) <= kNeutral * displaced) return FlotationOutcome::kNeutral;
-  return body.total_mass() < displaced ? FlotationOutcome::kFloats : FlotationOutcome::kSinks;
+  return outcome_by_mass(body.total_mass(), water.density * body.volume());
+}
+
+FlotationOutcome outcome_by_mass(double mass, double displaced) {
+  if (std::abs(mass - displaced) <= kNeutral * displaced) return FlotationOutcome::kNeutral;
+  return mass < displaced ? FlotationOutcome::kFloats : FlotationOutcome::kSinks;
 }
 
 Equilibria find_equilibria(const FloatingBody& body, const Water& water, const EquilibriumOptions& options) {

@@ -47,6 +47,8 @@ std::string_view to_string(AttitudeFamily family);
 
 // Returns what the mass alone decides: kSinks, kNeutral or else kFloats, and kFloats for every open mesh.
 FlotationOutcome outcome_by_mass(const FloatingBody& body, const Water& water);
+// The same of a closed body. displaced: [kg], of the water that it displaces fully submerged.
+FlotationOutcome outcome_by_mass(double mass, double displaced);
 
 struct Equilibrium {
   // Directions of rotation in which the energy falls: 0 stable, 1 a saddle point, 2 a maximum.

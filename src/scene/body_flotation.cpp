@@ -9,6 +9,7 @@
 
 #include "base/angles.h"
 #include "base/format.h"
+#include "flotation/submerged.h"
 #include "scene/body_key.h"
 #include "scene/body_warning_list.h"
 #include "scene/floating_bodies.h"
@@ -18,7 +19,6 @@
 namespace buoyancy {
 namespace {
 
-constexpr double kNoLever = 1e-6;   // over the body's reach: no more is rounding, also of generated meshes
 constexpr double kStays = 1e-3;     // [rad]: a smaller turn counts as none
 constexpr double kSameTurn = 1e-4;  // [rad], between an attitude and the same one found from another start
 constexpr std::size_t kMinVertices = 2'000;  // a smaller mesh counts as this many: a search has a fixed cost

@@ -21,7 +21,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-constexpr double kNeutral = 1e-9;           // relative difference of mass and displaced mass
 constexpr double kHeaveAmplitude = 0.05;    // over the mesh's diagonal
 constexpr double kRotationAmplitude = 0.1;  // [rad]
 
@@ -232,21 +231,6 @@ std::optional<NaturalMotions> natural_motions(const MotionMatrices& matrices, co
                         .pitch = motion(modes->pitch, 4, kRotationAmplitude)};
 }
 
-// Returns the velocity [m/s] along up of a submerged body whose buoyancy less its weight is `force` [N].
-std::optional<double> terminal_velocity_of(const Body& body, const Vec3& up_B, double force) {
-  if (force == 0.0) return 0.0;
-  if (body.hydrodynamics == nullptr || !body.hydrodynamics->coefficients().drag) return std::nullopt;
-  const DragCoefficients& drag = *body.hydrodynamics->coefficients().drag;
-  const double linear = up_B.dot(drag.linear.topLeftCorner<3, 3>() * up_B);
-  const double quadratic =
-      up_B.dot(drag.quadratic.topLeftCorner<3, 3>() * up_B.cwiseAbs().cwiseProduct(up_B));
-  // linear v + quadratic v^2 = |force|, in the form that does not cancel.
-  const double denominator = linear + std::sqrt(linear * linear + 4.0 * quadratic * std::abs(force));
-  const double speed = 2.0 * std::abs(force) / denominator;
-  if (!std::isfinite(speed)) return std::nullopt;
-  return std::copysign(speed, force);
-}
-
 // Lowers the step of `motions` to that of a state. Returns false where it is beyond double's range.
 bool limit_step(const MotionMatrices& matrices, const State& state, const Vec6& twist_B, StepLimit limit,
                 BodyMotions& motions) {
@@ -290,6 +274,20 @@ double NaturalMotion::period() const {
   return frequency > 0.0 ? 2.0 * std::numbers::pi / frequency : kInfinity;
 }
 
+std::optional<double> terminal_velocity_of(const Body& body, const Vec3& up_B, double force) {
+  if (force == 0.0) return 0.0;
+  if (body.hydrodynamics == nullptr || !body.hydrodynamics->coefficients().drag) return std::nullopt;
+  const DragCoefficients& drag = *body.hydrodynamics->coefficients().drag;
+  const double linear = up_B.dot(drag.linear.topLeftCorner<3, 3>() * up_B);
+  const double quadratic =
+      up_B.dot(drag.quadratic.topLeftCorner<3, 3>() * up_B.cwiseAbs().cwiseProduct(up_B));
+  // linear v + quadratic v^2 = |force|, in the form that does not cancel.
+  const double denominator = linear + std::sqrt(linear * linear + 4.0 * quadratic * std::abs(force));
+  const double speed = 2.0 * std::abs(force) / denominator;
+  if (!std::isfinite(speed)) return std::nullopt;
+  return std::copysign(speed, force);
+}
+
 std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh& mesh, const Water& water,
                                         const Vec3& current_W) {
   const Expected<RigidBodyMass> own = mass_of_body(body, water);
@@ -308,7 +306,8 @@ std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh&
 
   const Displaced whole = loaded.submerged();
   const double displaced = water.density * whole.volume;  // [kg], of a closed mesh
-  const bool neutral = !mesh.is_open() && std::abs(displaced - rigid.mass) <= kNeutral * rigid.mass;
+  const bool neutral =
+      !mesh.is_open() && outcome_by_mass(rigid.mass, displaced) == FlotationOutcome::kNeutral;
   if (!neutral) {
     if (const std::optional<FloatingPose> floating = loaded.afloat(q_WB, water)) {
       motions.balance = VerticalBalance::kFloats;

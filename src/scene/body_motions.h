@@ -76,6 +76,11 @@ struct BodyMotions {
 std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh& mesh, const Water& water,
                                         const Vec3& current_W);
 
+// Returns the velocity [m/s] along up, relative to the water, at which the drag on a fully submerged body
+// that does not turn balances `force` [N], its buoyancy less its weight, along up; nullopt without drag along
+// up, unless the force is 0. up_B: unit.
+std::optional<double> terminal_velocity_of(const Body& body, const Vec3& up_B, double force);
+
 // The motions of a body of a scene.
 struct MotionsOfBody {
   std::shared_ptr<const BodyMotions> motions;  // null: body_motions() has none, or [body.client] is absent

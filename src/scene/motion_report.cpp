@@ -4,11 +4,10 @@
 #include <string>
 #include <string_view>
 
+#include "flotation/submerged.h"
+
 namespace buoyancy {
 namespace {
-
-// A lever within this fraction of the mesh's diagonal is only rounding, also of generated meshes.
-constexpr double kNoLever = 1e-6;
 
 std::string_view to_string(ImmersionScaling scaling) {
   switch (scaling) {

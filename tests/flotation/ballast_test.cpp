@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "flotation/equilibrium.h"
+#include "flotation/submerged.h"
 #include "tests/flotation/bodies.h"
 #include "tests/support/contains.h"
 
@@ -81,11 +81,22 @@ TEST_F(BallastOfBoxShip, FindsThePositionOnALine) {
 
 TEST_F(BallastOfBoxShip, SubmergesWithTheCentreOfMassUnderTheMiddle) {
   const Ballast found = find({.target = {0.1, 0.2}, .mass = 11e6}).value();
-  EXPECT_TRUE(found.is_submerged);
+  EXPECT_EQ(found.outcome, FlotationOutcome::kSinks);
   EXPECT_GT(found.total_mass, found.displaced_mass);
   const Vec3 up = up_at({}, {0.1, 0.2});
   EXPECT_LT(found.center_of_mass_B.cross(up).norm(), 1e-12);
   EXPECT_NEAR(found.metacentric_heights[0], -found.center_of_mass_B.dot(up), 1e-12);
+}
+
+// The program equilibrium says sinks or neutrally buoyant of the same bodies.
+TEST_F(BallastOfBoxShip, DecidesLikeAnEquilibriumWhetherTheBodyFloats) {
+  const double neutral = kWater.density * ship_.mesh.volume - ship_.body.mass();
+  for (const double excess : {-1e-6, -1e-10, 0.0, 1e-10, 1e-6}) {
+    const double mass = neutral + excess * kWater.density * ship_.mesh.volume;
+    const Ballast found = find({.mass = mass}).value();
+    const FloatingBody result = loaded(ship_.body, found.mass_with_body, found.center_of_mass_B);
+    EXPECT_EQ(found.outcome, find_equilibria(result, kWater).outcome) << excess;
+  }
 }
 
 TEST_F(BallastOfBoxShip, RefusesWithWhatIsWrong) {
@@ -132,6 +143,18 @@ TEST_F(BallastOfBoxShip, CountsTheLiquidWhereItLiesAtTheTarget) {
   EXPECT_NEAR(at->angles.heel, target.heel, 1e-9);
   const double gm = at->state.hydrostatics.metacentric_heights[0];
   EXPECT_NEAR(found.metacentric_heights[0], gm, 1e-9 * std::abs(gm));
+
+  // Heavier than the water, it hangs at the same heel, and GM is what is left of BG.
+  const Ballast hung = find_ballast(body, kWater, {.target = target, .mass = 11e6}).value();
+  const FloatingBody heavy = loaded(body, hung.mass_with_body, hung.center_of_mass_B);
+  const SubmergedRest rest = submerged_rest(heavy, kWater).value();
+  EXPECT_NEAR(rest.angles.heel, target.heel, 1e-9);
+  EXPECT_NEAR(rest.angles.trim, 0.0, 1e-9);
+  const double buoyancy = hung.displaced_mass * kWater.gravity;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(rest.moments_per_degree[i], buoyancy * hung.metacentric_heights[i] * std::sin(kDegree),
+                1e-9 * rest.moments_per_degree[1]);
+  }
 }
 
 // Hulls of every kind at any attitude, whose ballast is free, at a place, on a line or split.
@@ -182,13 +205,14 @@ TEST_F(RandomBallast, GivesTheTargetOrARightRefusal) {
   int solved = 0;
   int refused = 0;
   int compared = 0;
+  int hung = 0;
   for (int n = 0; n < 1000; ++n) {
     SCOPED_TRACE(n);
     const HydrostaticMesh mesh = hull(n);
     const double length = mesh.diagonal;
     const FloatingBody body = body_of(mesh, uniform(0.05, 0.5), mesh.center_B + vector(0.1 * length));
     BallastTask task{.target = {uniform(-1.0, 1.0), uniform(-1.0, 1.0)},
-                     .mass = uniform(0.02, 0.55) * kWater.density * mesh.volume};
+                     .mass = uniform(0.02, 0.75) * kWater.density * mesh.volume};
     const Vec3 up = up_at(task.axes, task.target);
     const Ballast free = find_ballast(body, kWater, task).value();
     const Vec3 right = free.places[0].position_B - uniform(0.0, 0.5) * length * up;
@@ -225,7 +249,7 @@ TEST_F(RandomBallast, GivesTheTargetOrARightRefusal) {
     const auto found = find_ballast(body, kWater, task);
     const Eigen::Quaterniond attitude = attitude_at(task.axes, task.target, kWater.up_W);
     const double lowest = lowest_along(body, up) + up.dot(body.center_B());
-    const double draft = free.is_submerged ? 3.0 * length : free.draft;
+    const double draft = free.is_submerged() ? 3.0 * length : free.draft;
     const Pose pose{.p_WB = (kWater.level - draft - lowest) * kWater.up_W, .q_WB = attitude};
     if (!found) {
       ++refused;
@@ -237,9 +261,16 @@ TEST_F(RandomBallast, GivesTheTargetOrARightRefusal) {
     const FloatingBody result = loaded(body, found->mass_with_body, found->center_of_mass_B);
     const FloatingState state = floating_state(result, pose, kWater).value();
     EXPECT_LE(state.torque_W.norm(), 1e-7 * result.total_mass() * kWater.gravity * length);
-    if (found->is_submerged) continue;
-    EXPECT_LE(state.force_W.norm(), 1e-9 * result.total_mass() * kWater.gravity);
+    if (!found->is_submerged()) {
+      EXPECT_LE(state.force_W.norm(), 1e-9 * result.total_mass() * kWater.gravity);
+    }
     if (found->metacentric_heights[0] < 1e-3 * length) continue;
+    if (found->is_submerged()) {
+      ++hung;
+      const SubmergedRest rest = submerged_rest(result, kWater, task.axes).value();
+      EXPECT_LE((up_at(task.axes, rest.angles) - up).norm(), 1e-6);
+      continue;
+    }
     ++compared;
     const Vec3 tilt = 1e-4 * vector(1.0);
     const Eigen::Quaterniond start(Eigen::Quaterniond(1.0, tilt.x(), tilt.y(), tilt.z()).normalized() *
@@ -252,6 +283,7 @@ TEST_F(RandomBallast, GivesTheTargetOrARightRefusal) {
   EXPECT_GT(solved, 500);
   EXPECT_GT(refused, 200);
   EXPECT_GT(compared, 300);
+  EXPECT_GT(hung, 30);
 }
 
 }  // namespace

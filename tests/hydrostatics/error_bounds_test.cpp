@@ -103,6 +103,15 @@ struct AtPose {
   Vec3 reference_B;
 };
 
+double area_of(const HydrostaticMesh& mesh) {  // [m^2]
+  double sum = 0.0;
+  for (const Triangle& face : mesh.surface.triangles) {
+    const Vec3 a = mesh.vertex(face[0]);
+    sum += 0.5 * (mesh.vertex(face[1]) - a).cross(mesh.vertex(face[2]) - a).norm();
+  }
+  return sum;
+}
+
 // Piercing, submerged and adversarial poses in water of any density; reference points near and far away.
 AtPose random_request(const NamedMesh& named, const HydrostaticMesh& mesh, int turn, RandomPoses& random) {
   AtPose at;
@@ -148,6 +157,13 @@ TEST(ErrorBounds, AreThoseOfTheirFormulas) {
           EXPECT_GE(displaced.rounding, is_usual ? 0.0 : (1.0 - 1e-6) * sum_over_cut_faces(mesh, plane, cut));
           EXPECT_LE(near + displaced.rounding, mesh.max_rounding_bound() * (1.0 + 1e-6)) << where;
           force += displaced.rounding;
+          if (result.immersion == Immersion::kPiercing) {
+            WaterPlane rough = plane;
+            rough.error = 1e-9 * mesh.diagonal;
+            expect_bound(solver.displacement(rough).truncation_bound - displaced.truncation_bound,
+                         rough.error * (area_of(mesh) + std::abs(mesh.volume) / mesh.diagonal),
+                         "rough plane, " + where);
+          }
         } else if (is_exact(method) && !mesh.meets_volume_tolerance()) {
           force += kEpsilon * mesh.diagonal * sum_over_cut_faces(mesh, plane, [&](const Triangle& face) {
                      return squared_edges(mesh, face)[2];

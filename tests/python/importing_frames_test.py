@@ -86,6 +86,13 @@ class ImportsFramesOfSdf(ImportTestCase):
         self.assert_refused(sdf(cycle + link(pose=pose("0 0 0 0 0 0", relative_to="a"))), "relative to itself")
         self.assert_refused(sdf(link(pose=pose("0 0 0 0 0 0", relative_to="nose"))), "'nose'", "model.sdf:1")
 
+    def test_static_model_is_free(self):
+        files = {"pier/model.sdf": sdf("<static>true</static>" + link())}
+        included = "<sdf version='1.9'><world name='w'><include><uri>model://pier</uri></include></world></sdf>"
+        for text in (files["pier/model.sdf"], included):
+            self.assertIn("the model is static: it is free in the scene", self.import_model(text, files=files).output)
+        self.assertNotIn("static", self.import_model(sdf(link())).output)
+
     def test_gravity_gives_up(self):
         text = (
             sdf(link())
@@ -190,6 +197,61 @@ class GroupsLinksIntoBodies(ImportTestCase):
         self.assertIn("'propeller' (model.sdf:1), 3 kg: is a propeller", result.output)
         self.assertIn("'tether' (model.sdf:1), 4 kg: has no volume", result.output)
         self.assertIn("left out have 7 kg", result.output)
+        self.assertIn("note: joint 'base to fin': the bodies of the scene move freely", result.output)
+        joints = "note: joints 'base to fin', 'base to mast': the bodies of the scene move freely"
+        self.assertIn(joints, self.import_model(self.MODEL, "--links").output)
+
+    def test_kept_link_without_volume_is_a_mass(self):
+        # The tether's 4 kg hang at x = 3 on a ball joint: of 509 kg the centre moves by 12 / 509.
+        model = self.MODEL.replace("<link name='tether'>", "<link name='tether'>" + pose("3 0 0 0 0 0"))
+        result = self.import_model(model, "--keep", "tether")
+        self.assertIn("note: joint 'base to fin': the bodies of the scene move freely", result.output)
+        self.assertEqual(result.body["client"]["mass"], 509)
+        self.assert_numbers(result.body["client"]["center_of_mass"], [12 / 509, 0, 0])
+        self.assertIn("'tether': its mass is fixed to 'base', with 'base to tether' at 0", result.output)
+        self.assertIn("left out have 3 kg", result.output)
+        loose = self.import_model(sdf(link() + link("weight", inertial(1))), "--keep", "weight")
+        self.assertIn("'weight' (model.sdf:1), 1 kg: has no volume, nor what its joint hangs it on", loose.output)
+
+    def test_joints_with_limits_of_zero_are_fixed(self):
+        limits = "<axis><xyz>0 0 1</xyz><limit><lower>{}</lower><upper>{}</upper></limit></axis></joint>"
+        sdf_model = sdf(link() + link("bow", box("bow box") + inertial(3)) + fixed("base", "bow", "revolute"))
+        urdf_model = (
+            "<robot name='vehicle'><link name='base'>{0}<inertial><mass value='500'/></inertial></link>"
+            "<link name='bow'>{0}</link><joint name='base to bow' type='revolute'><parent link='base'/>"
+            "<child link='bow'/><limit lower='{{}}' upper='{{}}'/></joint></robot>"
+        ).format("<collision><geometry><box size='1 1 1'/></geometry></collision>")
+        for model, name in ((sdf_model.replace("</joint>", limits), "boat.sdf"), (urdf_model, "boat.urdf")):
+            result = self.import_model(model.format(0, 0), name=name)
+            self.assertEqual(len(result.bodies), 1)
+            self.assertIn("note: joint 'base to bow' with limits of 0 and 0: fixed", result.output)
+            for ends in ((0, 1), (-1, 0), ("-inf", "inf")):
+                self.assertEqual(len(self.import_model(model.format(*ends), name=name).bodies), 2)
+        self.assertEqual(len(self.import_model(sdf_model).bodies), 2)
+        # A limit that URDF does not state is 0.
+        without = urdf_model.replace("lower='{}' upper='{}'", "effort='1'")
+        self.assertEqual(len(self.import_model(without, name="boat.urdf").bodies), 1)
+
+    def test_detachable_link_is_fixed(self):
+        plugin = (
+            "<plugin filename='gz-sim-detachable-joint-system' name='gz::sim::systems::DetachableJoint'>"
+            "<parent_link>base</parent_link><child_model>{}</child_model><child_link>weight</child_link></plugin>"
+        )
+        model = link() + link("weight", inertial(20))
+        result = self.import_model(sdf(model + plugin.format("__model__")))
+        self.assertEqual(result.body["client"]["mass"], 520)
+        self.assertIn("note: link 'weight' is fixed to 'base', until it is dropped", result.output)
+        self.assertEqual(self.import_model(sdf(model + plugin.format("tow"))).body["client"]["mass"], 500)
+
+    def test_links_that_plugins_drive_are_propellers(self):
+        names = ("gz::sim::systems::Thruster", "gz::sim::systems::MulticopterMotorModel", "gazebo_motor_model")
+        model = link() + link("t0", box("blade") + inertial(1)) + fixed("base", "t0", "revolute")
+        for name in names:
+            driven = f"<plugin name='{name}' filename='f'><jointName>base to t0</jointName></plugin>"
+            result = self.import_model(sdf(model + driven))
+            self.assertIn("'t0' (model.sdf:1), 1 kg: is a propeller", result.output)
+            self.assertIn(f"- thruster '{name}'", result.output)
+        self.assertEqual(len(self.import_model(sdf(model)).bodies), 2)
 
     def test_specks_have_no_volume(self):
         speck = link("depth", box("speck", "1e-6 1e-6 1e-6") + inertial(0.01))
@@ -285,6 +347,31 @@ class ImportsMjcf(ImportTestCase):
         result = self.import_model(model, name="b.xml")
         for words in ("density = 1000", "viscosity = 0.001", 'fluidshape = "ellipsoid"'):
             self.assertIn(words, result.output)
+
+    def test_body_of_several_needs_a_name(self):
+        body = "<body {}><freejoint/><geom type='box' size='1 1 1'/></body>"
+        named = body.format("name='b'")
+        model = f"<mujoco><worldbody>{body.format('')}{named}</worldbody></mujoco>"
+        words = ("2 bodies to choose from (one without a name, b.xml:1, 'b')", "and name it first")
+        self.assert_refused(model, *words, name="b.xml")
+        self.assertEqual(self.import_model(model, "--model", "b", name="b.xml").body["name"], "b")
+
+    def test_what_holds_the_vehicle_is_reported(self):
+        model = """<mujoco><option><flag gravity='disable'/></option><default><joint type='{}'/></default><worldbody>
+          <body name='b'>{}<geom type='box' size='1 1 1'/></body></worldbody>
+          <tendon><fixed name='cable'/></tendon><equality><connect name='hook'/></equality></mujoco>"""
+        free = "it is free in the scene"
+        for kind, joint, words in (
+            ("slide", "<joint/>", f"the body 'b' moves on joints of the world: {free}"),
+            ("slide", "", f"the body 'b' is fixed to the world: {free}"),
+            ("slide", "<freejoint/>", None),
+            ("free", "<joint/>", None),
+        ):
+            output = self.import_model(model.format(kind, joint), name="b.xml").output
+            self.assertIn(words or "not converted: 3", output)
+            self.assertEqual(free in output, words is not None)
+            for left_out in ("gravity 0", "tendon 'cable' (fixed)", "equality 'hook' (connect)"):
+                self.assertIn(f"- {left_out}", output)
 
     def test_capsule_runs_from_to(self):
         model = """<mujoco><worldbody><body name='b'><freejoint/><geom type='capsule' fromto='0 0 0 2 0 0' size='0.5'/>

@@ -204,6 +204,13 @@ class ConvertsHydrodynamics(ImportTestCase):
         linear = self.loads(text, model).body["drag"]["linear"]
         self.assertEqual([element(i, j, linear) for i, j in ((1, 1), (1, 5), (5, 1), (5, 5))], [4, 6, 6, 12])
 
+    def test_buoyancy_of_links_is_reported(self):
+        buoyancy = "<buoyancy><damping xyz='1 2 3'/></buoyancy>"
+        shape = "<collision><geometry><box size='1 1 1'/></geometry></collision>"
+        urdf = f"<robot name='vehicle'><link name='base'>{shape}{buoyancy}</link></robot>"
+        for text, name in ((sdf(link(inside=box() + buoyancy)), "boat.sdf"), (urdf, "boat.urdf")):
+            self.assertIn("- <buoyancy> of 'base', of freefloating_gazebo", self.import_model(text, name=name).output)
+
     def test_unknown_links_and_plugins_are_named(self):
         result = self.loads(
             plugin(GZ, xU=-1).replace(">base<", ">bow<")
@@ -231,6 +238,15 @@ class ConvertsWater(ImportTestCase):
         text = world(self.BUOYANCY.format("<uniform_fluid_density>998</uniform_fluid_density>"))
         self.assertEqual(self.import_model(text).scene["water"]["density"], 998)
 
+    def test_density_of_hydrodynamics_is_second_choice(self):
+        for key in ("water_density", "waterDensity"):
+            text = f"<model name='vehicle'>{link() + plugin(GZ, xU=-1, **{key: 998})}</model>"
+            self.assertEqual(self.import_model(world(model=text)).scene["water"]["density"], 998)
+            buoyancy = self.BUOYANCY.format("<uniform_fluid_density>1020</uniform_fluid_density>")
+            result = self.import_model(world(buoyancy, model=text))
+            self.assertEqual(result.scene["water"]["density"], 1020)
+            self.assertIn("density of the water is 1020.0 (model.sdf:1) and 998.0 (model.sdf:1)", result.output)
+
     def test_air_above_gives_level(self):
         layers = (
             "<graded_buoyancy><default_density>1020</default_density><density_change><above_depth>-5</above_depth>"
@@ -241,6 +257,20 @@ class ConvertsWater(ImportTestCase):
         self.assertEqual(result.scene["water"], {"density": 1020, "level": 2})
         self.assertIn("1000 kg/m^3 above -5 m", result.text)
         self.assertIn("1 kg/m^3 above 2 m are air", result.text)
+
+    def test_enabled_entities_are_those_of_the_model(self):
+        for names, words in (
+            (["vehicle"], None),
+            (["raft", "vehicle::base"], "note: <enable> vehicle::base: every body of the scene is buoyant"),
+            (["raft", "buoy"], "warning: <enable> does not name 'vehicle'"),
+        ):
+            inside = "".join(f"<enable>{name}</enable>" for name in names)
+            output = self.import_model(world(self.BUOYANCY.format(inside))).output
+            self.assertNotIn("<enable> raft", output)
+            if words is None:
+                self.assertNotIn("enable", output)
+            else:
+                self.assertIn(words, output)
 
     def test_current_has_two_angles(self):
         text = (
@@ -265,12 +295,13 @@ class ConvertsWater(ImportTestCase):
         text = (
             "<plugin filename='libSurface.so' name='vrx::Surface'><link_name>base</link_name>"
             "<fluid_level>1</fluid_level>"
-            f"<hull_radius>0.2</hull_radius><wavefield>{wave}</wavefield></plugin>"
+            f"<hull_radius>0.2</hull_radius><linear_drag>25</linear_drag><wavefield>{wave}</wavefield></plugin>"
         )
         result = self.import_model(sdf(link() + text))
         water = result.scene["water"]
         self.assertEqual(water["level"], 1)
-        self.assertIn("<hull_radius> = 0.2", result.text)
+        self.assertIn("<hull_radius> = 0.2 of 'vrx::Surface': buoyancy follows from the geometry", result.text)
+        self.assertIn("<linear_drag> = 25 of 'vrx::Surface': give [body.drag] instead", result.text)
         omega = math.pi / 2
         expected = [
             (0.05, omega * math.sqrt(2), 90 - math.degrees(0.5)),

@@ -4,6 +4,7 @@ import re
 import subprocess
 import sys
 import unittest
+import warnings
 
 import numpy as np
 from importing_support import BOX_OBJ, ImportTestCase, box, fixed, inertial, link, mjcf, sdf, urdf, urdf_joint
@@ -38,6 +39,31 @@ class ImportsGeometry(ImportTestCase):
         os.environ["GZ_SIM_RESOURCE_PATH"] = str(self.folder / "other")
         self.addCleanup(os.environ.pop, "GZ_SIM_RESOURCE_PATH")
         self.import_model(sdf(link(inside=mesh("model://boat/meshes/hull.obj") + inertial())))
+
+    def test_other_schemes_are_searched_like_models(self):
+        for uri in ("model://boat/hull.obj", "models://boat/hull.obj"):
+            result = self.import_model(
+                sdf(link(inside=mesh(uri) + inertial())),
+                name="worlds/boat.sdf",
+                files={"models/boat/hull.obj": BOX_OBJ},
+            )
+            self.assertEqual(result.body["part"][0]["mesh"]["file"], "models/boat/hull.obj")
+
+    def test_files_of_fuel_are_searched_in_its_folders(self):
+        url = "https://fuel.gazebosim.org/1.0/Owner/models/My Boat"
+        cache = "fuel/fuel.gazebosim.org/owner/models/my boat"
+        os.environ["GZ_FUEL_CACHE_PATH"] = str(self.folder / "fuel")
+        self.addCleanup(os.environ.pop, "GZ_FUEL_CACHE_PATH")
+        text = sdf(link(inside=mesh(f"{url}/2/files/meshes/hull.obj") + inertial()))
+        included = f"<sdf version='1.9'><world name='w'><include><uri>{url}</uri></include></world></sdf>"
+        self.assert_refused(included, f"gz fuel download -u '{url}'", "/owner/models. ")
+        # The newest version comes first, and a folder beside the model before those of the cache.
+        for root in (f"{cache}/9", f"{cache}/10", "My Boat"):
+            files = {f"{root}/meshes/hull.obj": BOX_OBJ, f"{root}/model.sdf": sdf(link(root[-2:]))}
+            result = self.import_model(text, files=files)
+            self.assertEqual(result.body["part"][0]["mesh"]["file"], f"{root}/meshes/hull.obj")
+            scene = self.import_model(included, name="w.sdf").text
+            self.assertIn(f"its frame is that of the link '{root[-2:]}'", scene)
 
     def test_missing_mesh_names_places(self):
         text = sdf(link(inside=mesh("model://boat/hull.obj") + inertial()))
@@ -128,6 +154,36 @@ class ImportsGeometry(ImportTestCase):
         result = self.import_model(text, files={"hull.obj": open_box})
         self.assertEqual(result.body["part"][0]["close_holes"], 0.01)
         self.assertIn("close_holes = 0.01 closes its holes", result.output)
+        closed = mesh("box.obj", name="box", pose="<pose>9 0 0 0 0 0</pose>")
+        text = sdf(link(inside=mesh("hull.obj") + closed + inertial()))
+        self.assert_refused(text, "boundary edges", "--close-holes SHARE", files={"box.obj": BOX_OBJ})
+        result = self.import_model(text, "--close-holes", "2")
+        self.assertEqual([part.get("close_holes") for part in result.body["part"]], [2, None])
+        self.assertIn("warning: mesh 'hull.obj' is not closed: close_holes = 2.0 closes its holes", result.output)
+
+    def test_axis_up_of_collada_is_a_note(self):
+        # A tetrahedron with y up in its file: Gazebo takes its coordinates as they are.
+        geometry = (
+            "<geometry id='g'><mesh><source id='p'><float_array id='a' count='12'>0 0 0 1 0 0 0 1 0 0 0 1</float_array>"
+            "<technique_common><accessor source='#a' count='4' stride='3'><param name='X' type='float'/>"
+            "<param name='Y' type='float'/><param name='Z' type='float'/></accessor></technique_common></source>"
+            "<vertices id='v'><input semantic='POSITION' source='#p'/></vertices><triangles count='4'>"
+            "<input semantic='VERTEX' source='#v' offset='0'/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles></mesh>"
+            "</geometry>"
+        )
+        collada = (
+            "<COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'><asset>"
+            f"<up_axis>Y_UP</up_axis></asset><library_geometries>{geometry}</library_geometries><library_visual_scenes>"
+            "<visual_scene id='s'><node><instance_geometry url='#g'/></node></visual_scene></library_visual_scenes>"
+            "<scene><instance_visual_scene url='#s'/></scene></COLLADA>"
+        )
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            result = self.import_model(
+                sdf(link(inside=mesh("hull.dae") + inertial(100))), files={"hull.dae": collada}
+            )
+        self.assertIn("note: mesh 'hull.dae' has another axis than z up in its file", result.output)
+        self.assertEqual(result.error, "")
 
     def test_body_floats_as_computed_by_hand(self):
         # A catamaran of two boxes 4 x 0.5 x 1: 820 kg displace 0.8 m^3, 0.2 m deep.
@@ -155,6 +211,7 @@ REFUSED = {
         ("<?xml version='1.0' encoding='UTF-9'?><sdf/>", "unknown encoding: UTF-9"),
         ("<html/>", "root element is <html>"),
         ("<sdf version='1.9'><model name='a'>", "is not XML"),
+        ("<sdf version='1.9'>\n<model name=a/></sdf>", "model.sdf:2: is not XML", "without quotes"),
         (sdf(box()), "/sdf/model[vehicle]: the model 'vehicle' has no link"),
         (sdf(link(inside=box(size="1 1") + inertial())), "size [1.0, 1.0]", "3 lengths from 1e", "/collision[box]: "),
         (sdf(link(inside=box(size="1 nan 1") + inertial())), "'1 nan 1'", "finite numbers", "/geometry/box/size: "),
@@ -165,6 +222,7 @@ REFUSED = {
         (sdf(link(pose="<pose rotation_format='quat_xyzw'>1 2 3 0 0 0 0</pose>")), "length 0", "/link[base]/pose: "),
         (sdf(link(inside=box() + inertial("1e13"))), "<mass> is '1e13'", "up to 1e+12", "/inertial/mass: "),
         (sdf(link(inside=mesh("a" * 5000))), "is not found", "/collision[hull]: "),
+        (sdf(link(inside=mesh(f"https://fuel.gazebosim.org/1.0/owner/models/{'a' * 5000}"))), "is not found"),
         (sdf(link() + "<frame><pose/></frame>"), "the <frame> has no name", "/sdf/model[vehicle]/frame: "),
         (sdf(link() + fixed("base", "mast")), "no link, joint or frame is named 'mast'", "/joint[base to mast]: "),
         (sdf(link() + fixed("base", "base")), "connects 'base' with itself", "/joint[base to base]: "),

@@ -538,6 +538,75 @@ TEST_F(HydrostaticsProgram, SaysThatABodySinks) {
   EXPECT_TRUE(contains(arms.standard_error, "sinks"));
 }
 
+// 19,200 m^3 of 1,100 kg/m^3, in water of 1,025.
+TEST_F(HydrostaticsProgram, SaysHowABodyThatSinksRests) {
+  const std::string client = "density = 1100\ncenter_of_mass = [0.03, -0.04, -0.12]\n";
+  const auto submerged = [&](const std::string& more) {
+    const FinishedProcess result = run({"equilibrium", "--scene", scene(client, more), "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    return nlohmann::json::parse(result.standard_output).at("submerged");
+  };
+  const double buoyancy = 1025.0 * 9.80665 * 19200.0;
+  const double net_weight = 75.0 * 9.80665 * 19200.0;
+  const auto rest = submerged("");
+  EXPECT_NEAR(rest.at("heel").get<double>(), std::atan2(4.0, 12.0) / kDegree, 1e-9);
+  EXPECT_NEAR(rest.at("trim").get<double>(), std::asin(-3.0 / 13.0) / kDegree, 1e-9);
+  EXPECT_EQ(rest.at("quaternion_wxyz").size(), 4U);
+  EXPECT_EQ(rest.at("family"), "none");
+  EXPECT_NEAR(rest.at("bg").get<double>(), 0.13, 1e-12);
+  for (const auto& moment : rest.at("righting_moment_per_degree")) {
+    EXPECT_NEAR(moment.get<double>(), buoyancy * 0.13 * std::sin(kDegree), 1e-3);
+  }
+  EXPECT_NEAR(rest.at("net_weight").get<double>(), net_weight, 1e-3);
+  EXPECT_EQ(rest.at("motion"), "sinks");
+  EXPECT_TRUE(rest.at("terminal_speed").is_null());
+  // Quadratic drag of equal coefficients c along the axes: c v |v|, of each component by itself.
+  const auto with_drag = submerged("[body.drag]\nquadratic = [1e6, 1e6, 1e6, 0, 0, 0]\n");
+  const double cubes = (3.0 * 3.0 * 3.0 + 4.0 * 4.0 * 4.0 + 12.0 * 12.0 * 12.0) / (13.0 * 13.0 * 13.0);
+  EXPECT_NEAR(with_drag.at("terminal_speed").get<double>(), std::sqrt(net_weight / (1e6 * cubes)), 1e-9);
+
+  const FinishedProcess text = run({"equilibrium", "--scene", scene(client)});
+  EXPECT_TRUE(
+      contains(text.standard_output,
+               "The body sinks: it is heavier than the water that it can displace.\n"
+               "Fully submerged it rests at a heel of 18.4349 and a trim of -13.3424 degrees, BG 0.13 m.\n"
+               "Righting moment per degree: 4.3787e+05 N m.\n"
+               "Net weight 1.41216e+07 N: it sinks, ever faster, since no drag is given.\n"))
+      << text.standard_output;
+}
+
+TEST_F(HydrostaticsProgram, SaysWhenACompartmentSinksTheBody) {
+  const std::string flooded =
+      "[[body.compartment]]\nshape = { type = \"box\", size = [40, 20, 12] }\n"
+      "position = [20, 0, 0]\npermeability = 1\nflooded = 1\n";
+  const std::string heavy =
+      scene("density = 768.75\n", flooded);  // three quarters of the hull's displacement
+  const FinishedProcess result = run({"equilibrium", "--scene", heavy, "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+  const auto rest = nlohmann::json::parse(result.standard_output).at("submerged");
+  EXPECT_NEAR(rest.at("trim").get<double>(), -90.0, 1e-6) << "the stern displaces, 20 m behind the mass";
+  EXPECT_NEAR(rest.at("bg").get<double>(), 20.0, 1e-9);
+}
+
+TEST_F(HydrostaticsProgram, ReportsAFloatingBodySubmergedOnRequest) {
+  const FinishedProcess plain = run({"equilibrium", "--scene", ship()});
+  EXPECT_FALSE(contains(plain.standard_output, "ubmerged"));
+  const FinishedProcess text = run({"equilibrium", "--scene", ship(), "--submerged"});
+  EXPECT_TRUE(text.standard_output.starts_with(plain.standard_output));
+  EXPECT_TRUE(contains(text.standard_output, "Net weight -9.64974e+07 N: it rises, ever faster"))
+      << text.standard_output;
+  const std::string even = scene("density = 1025\n");
+  EXPECT_TRUE(
+      contains(run({"equilibrium", "--scene", even}).standard_output,
+               "Fully submerged it rests in any attitude: its centre of mass is at that of buoyancy.\n"));
+  const FinishedProcess json = run({"equilibrium", "--scene", even, "--json"});
+  const auto rest = nlohmann::json::parse(json.standard_output).at("submerged");
+  EXPECT_EQ(rest.at("family"), "sphere");
+  EXPECT_EQ(rest.at("motion"), "hovers");
+  EXPECT_EQ(rest.at("terminal_speed"), 0.0);
+  EXPECT_EQ(run({"gz", "--scene", ship(), "--submerged"}).exit_code, 2);
+}
+
 TEST_F(HydrostaticsProgram, WritesAPageBesideJsonAndCsv) {
   const std::string page = dir_.path("gz.html");
   const FinishedProcess result = run(
@@ -699,7 +768,7 @@ TEST(HydrostaticsPageData, DrawsEveryPartThatDisplaces) {
   const Water water;
   const FloatingBody body = FloatingBody::make(pontoons, 1500.0, Vec3(5, 0, 0)).value();
   const PageSubject subject{.name = "pontoons", .body = &body, .water = &water, .axes = {}};
-  const std::string page = equilibria_page(subject, find_equilibria(body, water), "");
+  const std::string page = equilibria_page(subject, find_equilibria(body, water), nullptr, "");
   constexpr std::string_view kStart = "id=\"data\">";
   const std::size_t start = page.find(kStart) + kStart.size();
   const auto data = nlohmann::json::parse(page.substr(start, page.find("</script>", start) - start));

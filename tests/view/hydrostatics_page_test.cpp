@@ -291,6 +291,7 @@ TEST_F(HydrostaticsPage, SaysThatABodySinks) {
   const std::string heavy = std::string(kShip).replace(kShip.find("512.5"), 5, "2000");
   open(heavy, {"equilibrium"});
   EXPECT_TRUE(contains(text_of("#notices"), "The body sinks"));
+  EXPECT_TRUE(contains(text_of("#notices"), "Fully submerged it rests at a heel of"));
   EXPECT_EQ(browser().run("return document.getElementById('stage').offsetHeight"), 0);
 }
 

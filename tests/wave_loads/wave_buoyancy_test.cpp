@@ -69,6 +69,23 @@ TEST(WaveBuoyancy, BoundsTheVolume) {
   }
 }
 
+TEST(WaveBuoyancy, AddsTheRoundingOfTheMeshToTheBoundsOfTheLoad) {
+  const Floating body(Method::kHierarchical);
+  const Water& water = body.prepared.water();
+  const double weight = water.density * water.gravity;
+  const double rounding = body.mesh.rounding_bound();
+  for (const double height : {-2.0, -0.8, -0.2, 0.3, 0.9}) {
+    const WaveBuoyancyResult outcome = body.at(height);
+    const WaveLoad load = wave_load({&body.mesh, &body.wave_mesh.patches, body.solver.tolerance()},
+                                    body.prepared.expansion(), body.sea, InSea::raised(height), Vec3::Zero());
+    EXPECT_EQ(outcome.volume_error_bound, load.volume_bound + rounding) << height;
+    EXPECT_EQ(outcome.result.force_error_bound, weight * (load.force_bound + rounding)) << height;
+    EXPECT_EQ(outcome.result.torque_error_bound,
+              weight * (load.torque_bound + rounding * body.mesh.max_lever_arm(Vec3::Zero())))
+        << height;
+  }
+}
+
 // A sea of two waves that grows along a ramp, at half of its amplitudes.
 SeaDescription half_grown(WavePressure pressure, double depth) {
   SeaDescription description{.systems = {WaveComponents{{0.3, 1.6, 30.0, 50.0}, {0.1, 2.7, -70.0, 10.0}}}};

@@ -67,7 +67,7 @@ def arguments(argv, version):
     add("--visual", action="store_true", help="Take the visual geometry, not the collision geometry")
     add("--links", action="store_true", help="Make each link a body, also where joints are fixed")
     add("--drop", **names, metavar="LINK", help="Leave out a link; may be repeated")
-    keep = "Keep a link that is taken for a propeller or a sensor; may be repeated"
+    keep = "Keep a link that is taken for a propeller or a sensor, or the mass of one without volume; may be repeated"
     add("--keep", **names, metavar="LINK", help=keep)
     add("--path", **names, metavar="DIR", help="Search models, packages and meshes here too; may be repeated")
     holes = "Close holes of all meshes if hemispheres over them hold at most this share of the volume"

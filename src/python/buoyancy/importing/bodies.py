@@ -1,7 +1,8 @@
 """Which links become a body, and which are left out.
 
 Links that fixed joints connect are one body, whose frame is that of the root link: the one that is no child of such a
-joint. A body on a moving joint is left out if it has no volume, or is a propeller or a sensor, unless --keep names it.
+joint. A body on a moving joint is left out if it has no volume, or is a propeller or a sensor, unless --keep names it:
+then it is a body, or without volume a mass in the body on the other side of its joint.
 """
 import re
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ _SENSOR = re.compile(
     r"sensor|camera|(^|_)imu|(^|_)gps|dvl|lidar|laser|sonar|altimeter|magnetometer|antenna|hydrophone", re.IGNORECASE
 )
 _MIN_VOLUME = 1e-9  # m^3: what is smaller stands for a link whose shape does not matter
-_THRUSTER_PLUGIN = re.compile(r"thrust", re.IGNORECASE)
+_THRUSTER_PLUGIN = re.compile(r"thrust|motor_?model", re.IGNORECASE)
 _DRIVEN = ("joint_name", "jointName", "link_name", "linkName")
 
 
@@ -42,10 +43,18 @@ def group_links(model, options, report):
         return name
 
     children = set()
+    locked = [joint.name for joint in model.joints if joint.locked]
+    if locked and not options.links:
+        report.note(f"{_joints(locked)} with limits of 0 and 0: fixed")
     for joint in model.joints:
         if "world" in (joint.parent, joint.child) and joint.fixed:
             report.note(f"joint '{joint.name}' fixes the model to the world: it is free in the scene")
-        if options.links or not joint.fixed or joint.parent not in kept or joint.child not in kept:
+        if joint.parent not in kept or joint.child not in kept:
+            continue
+        link = kept[joint.child]
+        if link.name in options.keep and not joint.fixed and not geometry_of(Group(link, [link]), options):
+            report.note(f"link '{link.name}': its mass is fixed to '{joint.parent}', with '{joint.name}' at 0")
+        elif options.links or not joint.fixed:
             continue
         leader[find(joint.child)] = find(joint.parent)
         children.add(joint.child)
@@ -57,7 +66,17 @@ def group_links(model, options, report):
         roots = [name for name in names if name not in children]
         root = model.canonical if model.canonical in roots else roots[0]
         result.append(Group(kept[root], [kept[name] for name in names]))
-    return _without_accessories(model, result, options, report)
+    result = _without_accessories(model, result, options, report)
+    body = {link.name: number for number, group in enumerate(result) for link in group.links}
+    left = [j.name for j in model.joints if j.parent in body and body[j.parent] != body.get(j.child, body[j.parent])]
+    if left:
+        report.note(f"{_joints(left)}: the bodies of the scene move freely, your simulator joins them")
+    return result
+
+
+def _joints(names):
+    more = f" and {len(names) - 4} more" if len(names) > 4 else ""
+    return f"joint{'s' if len(names) > 1 else ''} {', '.join(map(repr, names[:4]))}{more}"
 
 
 def _without_accessories(model, groups, options, report):
@@ -72,6 +91,8 @@ def _without_accessories(model, groups, options, report):
         reason = ""
         if not geometry_of(group, options):
             reason = "has no volume"
+            if any(name in options.keep for name in names):
+                reason += ", nor what its joint hangs it on"
         elif model.canonical in names or any(name in options.keep for name in names):
             reason = ""
         elif any(name in driven or moving.get(name) in driven for name in names) or _PROPELLER.search(group.root.name):
@@ -85,10 +106,11 @@ def _without_accessories(model, groups, options, report):
         lost += mass
         report.leave_out(
             f"link{'s' if len(names) > 1 else ''} {', '.join(map(repr, names))} ({group.root.source}), "
-            f"{mass:.6g} kg: {reason}" + ("" if reason == "has no volume" else "; --keep keeps it")
+            f"{mass:.6g} kg: {reason}" + ("" if reason.startswith("has no volume") else "; --keep keeps it")
         )
     if lost > 0:
-        report.warn(f"the links that are left out have {lost:.6g} kg, which no body of the scene has")
+        report.warn(f"the links that are left out have {lost:.6g} kg, which no body of the scene has; --keep adds the "
+                    "mass of a link on a joint")
     if not result:
         kind, other = ("visual", "collision") if options.visual else ("collision", "visual")
         option = "without --visual" if options.visual else "with --visual"

@@ -20,13 +20,14 @@ def one_of(names):
 
 
 def choose(root, candidates, preferred, name, kind):
-    """Of pairs of a name and a value, the value that --model names; without it the only one of those preferred."""
+    """Of pairs of a name and an element, the element that --model names; without it the only one of those preferred."""
     chosen = [pair for pair in candidates if pair[0] == name] if name else preferred
     if len(chosen) != 1:
-        names = ", ".join(f"'{other}'" for other, _ in preferred) or "none"
+        names = ", ".join(f"'{other}'" if other else f"one without a name, {e.source}" for other, e in preferred)
         wanted = f", {len(chosen)} of them named '{name}'" if name else ""
-        fail(root, f"has {len(preferred)} {kind} to choose from ({names}){wanted}", f"one of its {kind}",
-             "a file with several vehicles, or a misspelt name", "Choose one with --model NAME")
+        unnamed = "" if all(other for other, _ in preferred) else ", and name it first if it has no name"
+        fail(root, f"has {len(preferred)} {kind} to choose from ({names or 'none'}){wanted}", f"one of its {kind}",
+             "a file with several vehicles, or a misspelt name", f"Choose one with --model NAME{unnamed}")
     return chosen[0][1]
 
 

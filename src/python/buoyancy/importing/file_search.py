@@ -27,17 +27,17 @@ class FileSearch:
             scheme, name = "file", name[len("file:") :]
         if scheme == "file" and os.path.isabs(name):
             candidates = [Path(name)]
-        elif scheme in ("model", "package"):
-            # The first part names a folder below one that is searched, or is the name of that folder itself.
+        elif scheme in ("http", "https"):
+            candidates = self._of_fuel(name)
+        elif separator and scheme != "file":
+            # The first part names a folder below one that is searched, or is the name of that folder itself. Gazebo
+            # takes every other scheme, such as models://, for model://.
             first, _, inside = name.partition("/")
             candidates = [near.parent / name]
             for folder in [near, *self.folders]:
                 candidates += [folder / name, folder / "models" / name]
                 if folder.name == first:
                     candidates.append(folder / inside)
-        elif scheme in ("http", "https"):
-            last = name.rstrip("/").split("/models/")[-1].split("/")[0]
-            candidates = [folder / last for folder in self.folders]
         else:
             candidates = [near / name, *(folder / name for folder in self.folders)]
         for candidate in candidates:
@@ -45,9 +45,28 @@ class FileSearch:
                 return candidate
         hint = "Name the folder that contains it with --path"
         if scheme in ("http", "https"):
-            hint = f"Download it (gz fuel download -u '{uri}') and name the folder that contains it with --path"
+            hint = f"Download it: gz fuel download -u '{uri}'; or name the folder that contains it with --path"
         if "$" in uri:
             hint = "Expand the file first (xacro, envsubst)"
         searched = ", ".join(dict.fromkeys(str(candidate.parent) for candidate in candidates))
         return fail(element, f"'{uri}' is not found", f"a {kind}, searched in {searched}",
                     "another package, or a search path that is not set", hint)
+
+    def _of_fuel(self, name):
+        """Where a model HOST/1.0/OWNER/models/NAME is, or a file NAME/VERSION/files/FILE of it.
+
+        Gazebo Fuel keeps what it downloads below folders in small letters, with one for each version.
+        """
+        head, _, tail = name.rstrip("/").partition("/models/")
+        model, _, rest = tail.partition("/")
+        inside = rest.partition("files/")[2]
+        model = model or head.rpartition("/")[2]
+        cache = Path(os.environ.get("GZ_FUEL_CACHE_PATH") or os.path.expanduser("~/.gz/fuel"))
+        owned = cache / head.partition("/")[0] / head.rpartition("/")[2].lower() / "models"
+        candidates = []
+        for folder in [*self.folders, owned]:
+            for place in (folder / model, folder / model.lower()):
+                versions = filter(str.isdecimal, os.listdir(place) if os.path.isdir(place) else ())
+                candidates += [place / version / inside for version in sorted(versions, key=int, reverse=True)]
+                candidates.append(place / inside)
+        return candidates

@@ -6,6 +6,7 @@ bands of latitude, half of them on each cap of a capsule. What they lack in volu
 import itertools
 import math
 import tempfile
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
@@ -170,10 +171,11 @@ class PartMaker:
             if part.contents:
                 path = Path(folder) / ("submesh" + part.suffix)
                 path.write_text(part.contents, encoding="utf-8")
-            attempts = [self.close_holes] if self.close_holes is not None else [None, _HOLES]
-            for close_holes in attempts:
+            for close_holes in (None, _HOLES if self.close_holes is None else self.close_holes):
                 try:
-                    mesh = _core.Mesh(path, scale=list(part.scale), close_holes=close_holes)
+                    with warnings.catch_warnings(record=True) as caught:
+                        warnings.simplefilter("always")
+                        mesh = _core.Mesh(path, scale=list(part.scale), close_holes=close_holes)
                     break
                 except _core.InputError as error:
                     failure = error
@@ -183,7 +185,10 @@ class PartMaker:
                     "--close-holes SHARE; the other geometry of the links: --visual; without this "
                     "link: --drop LINK."
                 ) from None
-        if close_holes is not None and close_holes != self.close_holes:
+        if caught:  # the only warning of a mesh alone: its file has another axis up
+            self.report.note(f"mesh '{part.file.name}' has another axis than z up in its file: its coordinates are "
+                             "used as they are, as Gazebo does")
+        if close_holes is not None:
             self.report.warn(f"mesh '{part.file.name}' is not closed: close_holes = {close_holes} closes its holes; "
                              f"its volume is then {mesh.volume:.6g} m^3")
         return Solid(mesh.volume, mesh.center_of_mass, mesh.inertia, np.array(mesh.bounding_box)), close_holes

@@ -30,8 +30,8 @@ _AIR = 100.0  # kg/m^3: a layer that is lighter is the air above the water
 _GEOMETRY = "buoyancy follows from the geometry"
 _UUV_SHAPE = ("metacentric_width", "metacentric_length", "submerged_height")
 _VRX_SHAPE = ("hullRadius", "boatWidth", "boatLength", "wave_model")
-_SURFACE_SHAPE = ("vehicle_length", "vehicle_width", "hull_radius", "hull_length", "points", "buoyancy", "linear_drag",
-                  "angular_drag")
+_SURFACE_SHAPE = ("vehicle_length", "vehicle_width", "hull_radius", "hull_length", "points", "buoyancy")
+_SURFACE_DRAG = ("linear_drag", "angular_drag")
 _UUV_MATRICES = {
     "added_mass": "added_mass",
     "linear_damping": "linear",
@@ -98,8 +98,11 @@ class Hydrodynamics:
                         value = added.number(row + column, 0.0)
                         result.matrices["added_mass"][[i, j], [j, i]] = value
                 self.coefficients.append(result)
+        self.stated = []  # elements of plugins whose density is the second choice
         for plugin in model.plugins:
             self._read(plugin)
+        for element in self.stated:
+            self._read_water(element, {"water_density": "density", "waterDensity": "density"})
 
     def _read(self, plugin):
         names = f"{plugin.name} {plugin.filename}"
@@ -167,6 +170,7 @@ class Hydrodynamics:
                 self.report.leave_out(f"<{child.tag}> = {value:g}: {why}; if |u| u is meant, write {with_abs}", child)
         if element.flag("disable_coriolis"):
             self.report.note("disable_coriolis: the Coriolis terms of added mass act in the scene", element)
+        self.stated.append(element)
         current = element.numbers("default_current", 3)
         if current is not None:
             self._set_water("current", tuple(current), element.find("default_current"))
@@ -192,8 +196,14 @@ class Hydrodynamics:
                                           "buoyancy is left out", layer)
                 else:
                     self.report.leave_out(f"graded buoyancy: {density:g} kg/m^3 above {height:g} m; {what}", layer)
-        for child in element.all("enable"):
-            self.report.note(f"<enable> {child.text.strip()}: every body of the scene is buoyant", child)
+        enabled, name = element.all("enable"), self.model.name
+        own = [child for child in enabled if name in child.text.strip().split("::")]
+        if enabled and not own:
+            self.report.warn(f"<enable> does not name '{name}': it has no buoyancy in Gazebo, but in the scene",
+                             enabled[0])
+        for child in own:
+            if child.text.strip() != name:
+                self.report.note(f"<enable> {child.text.strip()}: every body of the scene is buoyant", child)
         return True
 
     def simple_hydrodynamics(self, plugin, element):
@@ -225,7 +235,8 @@ class Hydrodynamics:
     def surface(self, plugin, element):
         """VRX: buoyancy of points of a hull; water level, density and waves are used."""
         self._read_water(element, {"fluid_level": "level", "fluid_density": "density"})
-        self._leave_out(element, _SURFACE_SHAPE, _GEOMETRY, " = ", f" of '{plugin.name}'")
+        for tags, why in ((_SURFACE_SHAPE, _GEOMETRY), (_SURFACE_DRAG, "give [body.drag] instead")):
+            self._leave_out(element, tags, why, " = ", f" of '{plugin.name}'")
         self.wavefield(plugin, element)
         return True
 
@@ -414,7 +425,11 @@ _SHAPES = {  # of uuv_simulator: their lengths, and what sets the matrices
     "cylinder": (("radius", "length"), _cylinder),
     "box": (("length", "width", "height"), _box),
 }
-_KINDS = (("thrust|propeller", "thruster"), ("lift.?drag|fin_", "fin"), ("buoyancy.?engine", "tank"))
+_KINDS = (
+    ("thrust|propeller|motor_?model", "thruster"),
+    ("lift.?drag|fin_", "fin"),
+    ("buoyancy.?engine", "tank"),
+)
 # The first reader that knows a plugin converts it; a reader returns False if the plugin has none of its keys.
 _PLUGINS = (
     (r"simple_?hydrodynamics|usv_gazebo_dynamics", Hydrodynamics.simple_hydrodynamics),

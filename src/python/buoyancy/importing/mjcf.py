@@ -31,16 +31,25 @@ class MjcfReader:
             for mesh in (self._merged(element, None) for element in asset.all("mesh")):
                 name = mesh.get("name") or mesh.get("file", "").rsplit("/", 1)[-1].rsplit(".", 1)[0]
                 self.meshes[name] = mesh
-        bodies = [body for world in root.all("worldbody") for body in self._elements("body", world)]
-        tops = [(body[0].get("name", ""), body) for body in bodies]
-        moving = [top for top in tops if top[1][0].all(*_JOINTS)]
-        body, pose, childclass = choose(root, tops, moving or tops, model_name, "bodies")
+        bodies = {
+            body: (pose, childclass)
+            for world in root.all("worldbody")
+            for body, pose, childclass in self._elements("body", world)
+        }
+        tops = [(body.get("name", ""), body) for body in bodies]
+        moving = [top for top in tops if top[1].all(*_JOINTS)]
+        body = choose(root, tops, moving or tops, model_name, "bodies")
+        pose, childclass = bodies[body]
         model = Model(body.get("name") or root.get("model") or "vehicle", body, "MJCF")
         self._read_body(body, "", frames.IDENTITY, childclass, model)
         # The frame of the model is that of its first body.
         model.pose = pose @ self._pose(body)
         self._read_options(root, model)
-        for other, _, _ in bodies:
+        joints = [self._merged(joint, childclass).get("type", "hinge") for joint in body.all("joint")]
+        if "free" not in joints and not body.all("freejoint"):
+            held = "moves on joints of" if joints else "is fixed to"
+            self.report.note(f"the body '{model.name}' {held} the world: it is free in the scene", body)
+        for other in bodies:
             if other is not body:
                 self.report.leave_out(f"body '{other.get('name', '')}' beside the vehicle", other)
         for actuators in root.all("actuator"):
@@ -48,6 +57,10 @@ class MjcfReader:
                 target = actuator.get("joint") or actuator.get("site") or actuator.get("tendon") or ""
                 self.report.leave_out(f"actuator '{actuator.get('name', '')}' ({actuator.tag}) on '{target}': a force "
                                       "of your simulator", actuator)
+        for section in root.all("equality", "tendon"):
+            for child in section.children:
+                self.report.leave_out(f"{section.tag} '{child.get('name', '')}' ({child.tag}): a constraint of your "
+                                      "simulator", child)
         return model
 
     def _include(self, element):
@@ -201,6 +214,8 @@ class MjcfReader:
         for option in root.all("option"):
             if "gravity" in option.attributes:
                 model.gravity, model.gravity_source = option.numbers("gravity", 3), option.source
+            if option.text_of("flag/gravity") == "disable":
+                model.gravity, model.gravity_source = [0.0] * 3, option.find("flag").source
             for key, unit in (("density", "kg/m^3"), ("viscosity", "Pa s"), ("wind", "m/s")):
                 if key in option.attributes:
                     self.report.leave_out(f"{key} = {option.get(key)} {unit} of <option>: the fluid of MuJoCo's own "

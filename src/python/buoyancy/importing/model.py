@@ -78,6 +78,7 @@ class Joint:
     child: str
     fixed: bool
     element: object
+    locked: bool = False  # fixed by limits of 0 and 0, as hulls of several links and sensors are
 
 
 @dataclass
@@ -145,6 +146,26 @@ def read_inertial(element, pose, mass, moment, path="mass"):
     xx, yy, zz = (element.number(f"inertia/{key}", moment) for key in ("ixx", "iyy", "izz"))
     xy, xz, yz = (element.number(f"inertia/{key}", 0.0) for key in ("ixy", "ixz", "iyz"))
     return Inertial(element.number(path, mass, minimum=0.0), pose, symmetric(xx, yy, zz, xy, xz, yz), element)
+
+
+def read_joint(element, name, parent, child, limits):
+    """A joint of SDF or URDF; the texts of its limits may be -inf, or empty. With limits of 0 and 0 it is fixed."""
+
+    def is_zero(text):
+        try:
+            return float(text) == 0
+        except ValueError:
+            return False
+
+    kind = element.get("type")
+    locked = kind in ("revolute", "prismatic") and all(map(is_zero, limits))
+    return Joint(name, parent, child, kind == "fixed" or locked, element, locked)
+
+
+def report_buoyancy(element, name, report):
+    """Reports what freefloating_gazebo reads from a link: an element that neither SDF nor URDF has."""
+    for child in element.all("buoyancy"):
+        report.leave_out(f"<buoyancy> of '{name}', of freefloating_gazebo: with its drag", child)
 
 
 def symmetric(xx, yy, zz, xy=0.0, xz=0.0, yz=0.0):

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import frames
 from .failure import choose, fail, one_of
-from .model import Inertial, Joint, Link, Model, Plugin, read_geometry, read_inertial
+from .model import Inertial, Joint, Link, Model, Plugin, read_geometry, read_inertial, read_joint, report_buoyancy
 from .xml_file import XmlReader
 
 _MAX_CHAIN = 200  # of frames that are relative to each other
@@ -154,8 +154,11 @@ class SdfReader:
         element = choose(root, candidates, moving, model_name, "models")
         scope = self._scope(element, _Scope(holder, ""))
         model = Model(scope.name or "vehicle", element, "SDF", pose=scope.model_pose())
+        if element.flag("static") or scope.element.flag("static"):
+            self.report.note("the model is static: it is free in the scene", element)
         self._flatten(scope, frames.IDENTITY, model)
         model.canonical = scope.canonical(element)
+        self._join_detachable(model)
         model.links_below_joints(self.report)
         if world is not None:
             model.plugins += [Plugin(plugin) for plugin in world.all("plugin")]
@@ -192,16 +195,27 @@ class SdfReader:
             place = pose @ scope.pose_of(element.get("name"), element)
             model.add(self._link(scope, element, prefix + element.get("name"), place, pose))
         for element in scope.element.all("joint"):
-            ends = [
+            ends = (
                 scope.link_of(element.text_of(end) or element.text_of(f"{end}/link_name"), element)
                 for end in ("parent", "child")
-            ]
-            name, is_fixed = prefix + element.get("name"), element.get("type") == "fixed"
-            model.joints.append(Joint(name, *ends, is_fixed, element))
+            )
+            limits = [element.text_of(f"axis/limit/{end}") for end in ("lower", "upper")]
+            model.joints.append(read_joint(element, prefix + element.get("name"), *ends, limits))
         for holder in (scope.element, *([scope.include] if scope.include is not None else [])):
             model.plugins += [Plugin(plugin, prefix) for plugin in holder.all("plugin")]
         for inner in scope.models.values():
             self._flatten(inner, pose @ inner.model_pose(), model)
+
+    def _join_detachable(self, model):
+        """Adds the joints that a plugin makes at the start, within the model, such as that of a drop weight."""
+        for plugin in model.plugins:
+            element = plugin.element
+            if "DetachableJoint" not in plugin.name or element.text_of("child_model") != "__model__":
+                continue
+            parent, child = (plugin.prefix + element.text_of(f"{end}_link") for end in ("parent", "child"))
+            if parent in model.links and child in model.links:
+                model.joints.append(Joint(f"DetachableJoint of {child}", parent, child, True, element))
+                self.report.note(f"link '{child}' is fixed to '{parent}', until it is dropped", element)
 
     def _link(self, scope, element, name, place, scope_pose):
         link = Link(name, place, element, has_sensor=bool(element.all("sensor")))
@@ -220,6 +234,7 @@ class SdfReader:
             density = inertial.number("density", minimum=0.0)
             if not link.mass_from_geometry:
                 link.inertial = read_inertial(inertial, in_link(inertial), 1.0, 1.0)
+        report_buoyancy(element, name, self.report)
         for child in element.all("collision", "visual"):
             for geometry in read_geometry(child, in_link(child), child.get("name", child.tag), self.report):
                 geometry.density = child.number("density", density, minimum=0.0)

@@ -1,7 +1,7 @@
 """Reads URDF. Its inertia has the order Ixx Ixy Ixz Iyy Iyz Izz; plugins are those of <gazebo> elements."""
 from . import frames
 from .failure import fail, one_of
-from .model import Joint, Link, Model, Plugin, read_geometry, read_inertial
+from .model import Link, Model, Plugin, read_geometry, read_inertial, read_joint, report_buoyancy
 
 
 def read_urdf(root, report):
@@ -26,6 +26,7 @@ def _link(element, name, report):
     link, inertial = Link(name, frames.IDENTITY, element), element.find("inertial")
     if inertial is not None:
         link.inertial = read_inertial(inertial, _origin(inertial), 0.0, 0.0, "mass/value")
+    report_buoyancy(element, name, report)
     for child in element.all("collision", "visual"):
         title = child.get("name", f"{child.tag} of {name}")
         link.geometry += read_geometry(child, _origin(child), title, report)
@@ -45,7 +46,9 @@ def _place(root, model, report):
             fail(element, f"the link '{ends[1]}' is the child of two joints", "a tree of links",
                  "a joint that was copied", "Remove one of them")
         children[ends[1]] = element
-        model.joints.append(Joint(element.get("name", ""), *ends, element.get("type") == "fixed", element))
+        missing = "0" if element.find("limit") else ""
+        limits = [element.text_of(f"limit/{end}", missing) for end in ("lower", "upper")]
+        model.joints.append(read_joint(element, element.get("name", ""), *ends, limits))
     roots = [name for name in model.links if name not in children]
     if len(roots) != 1:
         fail(root, f"has {len(roots)} root links ({', '.join(roots) or 'each is the child of a joint'})",

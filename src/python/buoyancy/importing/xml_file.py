@@ -176,7 +176,7 @@ class XmlReader:
         try:
             parser.Parse(data, True)
         except (xml.parsers.expat.ExpatError, LookupError, ValueError) as error:  # the latter two: of its encoding
-            fail(f"{path}:{parser.CurrentLineNumber}", f"is not XML ({error})",
-                 "an SDF, URDF or MJCF file", "a template (.erb, .xacro, Jinja) or another format",
-                 "Expand the template first")
+            fail(f"{path}:{parser.CurrentLineNumber}", f"is not XML ({error})", "an SDF, URDF or MJCF file",
+                 "a template (.erb, .xacro, Jinja), a value without quotes, or a bare & or < in a text",
+                 "Expand the template, or correct this line: Gazebo's own reader is less strict")
         return root[0]
