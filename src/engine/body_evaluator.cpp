@@ -123,8 +123,16 @@ bool BodyEvaluator::evaluate(const RequestView& request, const States& states, c
   first_state_ = states.first;
   const std::size_t chunks = chunks_of(states.size());
   prepare_buffers(states.size());
+  const bool may_be_long = chunks > 1 && deadline != kNoDeadline;
+  const Deadline begin_of_bounds = may_be_long ? Deadline::clock::now() : Deadline();
   run(chunks, kBoundsTime * static_cast<double>(states.size()),
       [&](std::size_t chunk) { evaluate_chunk(request, states, chunk); });
+  if (may_be_long) {
+    // Every slice looks at all states that are left. Where that takes most of it, as on a slow machine, the
+    // request would hardly advance: bodies get as much time again.
+    const Deadline now = Deadline::clock::now();
+    deadline = std::max(deadline, now + (now - begin_of_bounds));
+  }
   pending_order_.clear();
   repeated_order_.clear();
   unfinished_.clear();

@@ -63,9 +63,9 @@ class BodyEvaluator {
   // calls where the water is not that of the last request. Makes no heap allocation of its own once all
   // buffers are as large as the largest request needs. If the states contain a body more than once, it is
   // unspecified which of its poses is cached, which shows in counters.bodies_unchanged only. Returns whether
-  // all states were evaluated: after the deadline no other body is begun, except the first. Preconditions:
-  // there are at most kMaxStates, and the outputs are of this request. Throws std::bad_alloc; then evaluate
-  // them again.
+  // all states were evaluated: after the deadline no other body is begun, except the first, and those for
+  // which there is time within as long as looking at all states took. Preconditions: there are at most
+  // kMaxStates, and the outputs are of this request. Throws std::bad_alloc; then evaluate them again.
   bool evaluate(const RequestView& request, const States& states, const WaterState& water,
                 const Outputs& outputs, ServiceCounters& counters, Deadline deadline = kNoDeadline);
   // The indices of the states that the last evaluate() has left, valid until the next one.

@@ -15,7 +15,7 @@ namespace {
 
 using Step = RequestHandler::Step;
 
-constexpr Deadline kPassed{};  // a slice of one body
+constexpr Deadline kPassed{};  // of few bodies: a slice of one
 
 // Bodies of every kind of output that there is in this water.
 Scene mixed_scene(const std::string& water) {
@@ -153,6 +153,21 @@ TEST(RequestBudgets, StartsAgainInANewScene) {
   handler.set_scene(after);
   while (handler.in_progress() > 0) handler.resume(kPassed);
   EXPECT_EQ(reply_of(handler), whole_reply(after, request));
+}
+
+// As on a machine on which looking at all bodies takes a whole slice.
+TEST(RequestBudgets, ComputesInEverySliceAsLongAsItLooksAtBodies) {
+  constexpr int kBodies = 10'000;
+  std::vector<BodyState> states;
+  for (int i = 0; i < kBodies; ++i) states.push_back(upright(1, 1e-5 * i));
+  const ByteVector request = request_bytes({.utime = 1, .session_id = 1, .seq = 1}, states);
+  RequestHandler handler(shared_box_scene(), {.threads = 1});
+  int slices = 1;
+  for (Step step = handler.begin(request, kPassed); step == Step::kStarted; ++slices) {
+    step = handler.resume(kPassed);
+  }
+  EXPECT_LT(slices, kBodies / 4);
+  EXPECT_EQ(reply_of(handler), whole_reply(shared_box_scene(), request));
 }
 
 TEST(RequestBudgets, RejectsMoreBodiesThanTheSceneHas) {
