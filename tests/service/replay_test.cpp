@@ -495,7 +495,9 @@ bool wait_until_it_handles_sigterm(ChildProcess& child) {
     for (std::string line; std::getline(status, line);) {
       if (line.rfind("SigBlk:", 0) != 0) continue;
       const std::uint64_t blocked = std::stoull(line.substr(7), nullptr, 16);
-      if ((blocked >> (SIGTERM - 1) & 1U) != 0) return true;
+      const auto is_blocked = [blocked](int signal) { return (blocked >> (signal - 1) & 1U) != 0; };
+      // posix_spawn() and the starts of threads block all signals for a moment.
+      if (is_blocked(SIGTERM) && !is_blocked(SIGUSR2)) return true;
     }
   }
   return false;
