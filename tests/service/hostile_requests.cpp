@@ -67,7 +67,10 @@ class Watchdog {
     return {"NOTIFY_SOCKET=" + path_,
             "WATCHDOG_USEC=" + std::to_string(static_cast<int>(2 * kWatchdogInterval * 1e6))};
   }
-  void restart() { longest_ = 0.0; }
+  void restart() {
+    longest_ = 0.0;
+    last_ = Clock::now().time_since_epoch().count();  // the time before was that of the start
+  }
   // Beyond the interval, until now.
   double longest_delay() const {
     const double since_last = seconds_since(Clock::time_point(Clock::duration(last_)));
