@@ -56,7 +56,7 @@ void warn_of_unit(const Body& body, BodyWarningList& list) {
   const double scale = plausible_scale(density);
   std::string hint = "Correct the mass, or the size of the mesh";
   if (scale != 0.0) {
-    hint = format_text("With its lengths times {:4} the density is {:3} kg/m^3", scale,
+    hint = format_text("scale = {:4} gives {:3} kg/m^3; where a scale is set, multiply it by that", scale,
                        density / (scale * scale * scale));
   }
   list.add(body, {"",

@@ -27,9 +27,11 @@ TEST(MeshWarnings, NoteAMeshInAnotherUnit) {
       warnings_of("[500, 250, 250]", "mass = 13"),
       ElementsAre("test scene: body 1: mass over volume = 13 kg / 3.125e+07 m^3 = 4.16e-07 kg/m^3; expected "
                   "20 to 20000 kg/m^3. Likely cause: a mesh in another unit than metres, such as "
-                  "millimetres. With its lengths times 0.001 the density is 416 kg/m^3."));
-  EXPECT_THAT(warnings_of("[20, 10, 10]", "mass = 26"), ElementsAre(HasSubstr("times 0.0254"))) << "inches";
-  EXPECT_THAT(warnings_of("[0.0005, 0.00025, 0.00025]", "mass = 13"), ElementsAre(HasSubstr("times 1000")));
+                  "millimetres. scale = 0.001 gives 416 kg/m^3; where a scale is set, multiply it by that."));
+  EXPECT_THAT(warnings_of("[20, 10, 10]", "mass = 26"), ElementsAre(HasSubstr("scale = 0.0254 gives")))
+      << "inches";
+  EXPECT_THAT(warnings_of("[0.0005, 0.00025, 0.00025]", "mass = 13"),
+              ElementsAre(HasSubstr("scale = 1000 gives")));
 }
 
 TEST(MeshWarnings, SayNothingOfWhatFloatsOrSinks) {
