@@ -473,16 +473,29 @@ TEST_F(Replay, StopsOnSignalIfItsPipeHasNoActiveReader) {
   }
 }
 
-// Waits until the child has opened the file, and returns whether it still runs then.
+bool has_open(const ChildProcess& child, const std::string& file) {
+  const std::string descriptors = "/proc/" + std::to_string(child.pid()) + "/fd";
+  std::error_code ended;
+  for (std::filesystem::directory_iterator open(descriptors, ended), end; open != end;
+       open.increment(ended)) {
+    if (std::filesystem::read_symlink(open->path(), ended) == file) return true;
+    if (ended) break;
+  }
+  return false;
+}
+
+bool is_asleep(const ChildProcess& child) {
+  std::ifstream file("/proc/" + std::to_string(child.pid()) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  return contains(text, ") S ");
+}
+
+// Waits until the child has opened the file and waits for something else, so that it knows the file's size.
+// Returns whether it still runs then.
 bool wait_until_open(ChildProcess& child, const std::string& file) {
   while (!child.wait(0.002)) {
-    const std::string descriptors = "/proc/" + std::to_string(child.pid()) + "/fd";
-    std::error_code ended;
-    for (std::filesystem::directory_iterator open(descriptors, ended), end; open != end;
-         open.increment(ended)) {
-      if (std::filesystem::read_symlink(open->path(), ended) == file) return true;
-      if (ended) break;
-    }
+    if (has_open(child, file) && is_asleep(child)) return true;
   }
   return false;
 }
