@@ -76,7 +76,7 @@ void measure(const std::string& directory) {
     poses.positions = std::span(positions).subspan(3 * begin, 3 * size);
     poses.quaternions_wxyz = std::span(quaternions).subspan(4 * begin, 4 * size);
     evaluate_poses(
-        *body, QueryWater{{}, nullptr, Vec3::Zero(), true}, poses,
+        *body, QueryWater{{}, nullptr, {}, true}, poses,
         {std::span(statuses).subspan(begin, size), std::span(forces).subspan(3 * begin, 3 * size),
          std::span(torques).subspan(3 * begin, 3 * size), std::span(volumes).subspan(begin, size),
          std::span(centers).subspan(3 * begin, 3 * size), std::span(force_bounds).subspan(begin, size),

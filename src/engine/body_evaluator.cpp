@@ -312,7 +312,7 @@ bool BodyEvaluator::add_loads_of(const Pending& pending, const BodyOutcome& buoy
   const Pose pose = to_pose(last_[pending.body].pose);
   std::optional<BodyLoads> loads;
   if (body.loads) loads.emplace();
-  add_loads(body, water_, scene_->current_W(), pose, twist, buoyancy, wrench, loads ? &*loads : nullptr);
+  add_loads(body, water_, scene_->current(), pose, twist, buoyancy, wrench, loads ? &*loads : nullptr);
   if (loads && outputs_.loads.size() > 0) {
     outputs_.loads.set(outputs_.load_places[pending.state - first_state_], *loads);
   }

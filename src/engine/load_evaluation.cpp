@@ -98,9 +98,9 @@ BodyTwist twist_of(const BodyState& state) {
   return {to_vec3(state.linear_velocity), to_vec3(state.angular_velocity)};
 }
 
-FlowAtBody flow_at_body(const WaterState& water, const Vec3& current_W, const Vec3& p_W) {
+FlowAtBody flow_at_body(const WaterState& water, const Current& current, const Vec3& p_W) {
   FlowAtBody motion;
-  motion.velocity_W = current_W;
+  motion.velocity_W = current.at(*water.at_rest, p_W);
   if (water.waves == nullptr) return motion;
   const WaterAtPoint point = water.waves->at(p_W);
   motion.velocity_W += point.velocity_W;
@@ -118,14 +118,14 @@ FlowAtBody flow_at_body(const WaterState& water, const Vec3& current_W, const Ve
   return motion;
 }
 
-HydrodynamicState hydrodynamic_state(const Body& body, const WaterState& water, const Vec3& current_W,
+HydrodynamicState hydrodynamic_state(const Body& body, const WaterState& water, const Current& current,
                                      const Pose& pose, const BodyTwist& twist, const BodyOutcome& outcome) {
   HydrodynamicState state;
   state.motion = {pose.q_WB.normalized().toRotationMatrix(), twist.velocity_W, twist.angular_velocity_W};
   const auto* const drag = body.hydrodynamics->drag_placement();
   const auto* const added = body.hydrodynamics->added_mass_placement();
   const auto water_at = [&](const Vec3& center_B) {
-    return flow_at_body(water, current_W, pose.p_WB + state.motion.R_WB * center_B);
+    return flow_at_body(water, current, pose.p_WB + state.motion.R_WB * center_B);
   };
   if (drag != nullptr) {
     state.at_drag.water = water_at(drag->center_B);
@@ -175,15 +175,15 @@ BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const Hydrodyna
   return loads;
 }
 
-void add_loads(const Body& body, const WaterState& water, const Vec3& current_W, const Pose& pose,
+void add_loads(const Body& body, const WaterState& water, const Current& current, const Pose& pose,
                const BodyTwist& twist, const BodyOutcome& buoyancy, BodyWrench& wrench, BodyLoads* loads) {
   if (body.hydrodynamics == nullptr) {
-    if (loads != nullptr) *loads = to_loads(body, wrench, flow_at_body(water, current_W, pose.p_WB));
+    if (loads != nullptr) *loads = to_loads(body, wrench, flow_at_body(water, current, pose.p_WB));
     return;
   }
   // A dry body has neither drag nor added mass.
   if (buoyancy.result.immersion == Immersion::kDry && loads == nullptr) return;
-  const HydrodynamicState state = hydrodynamic_state(body, water, current_W, pose, twist, buoyancy);
+  const HydrodynamicState state = hydrodynamic_state(body, water, current, pose, twist, buoyancy);
   const HydrodynamicLoad load = body.hydrodynamics->load(state);
   if (loads != nullptr) *loads = to_loads(body, wrench, state, load);
   add_hydrodynamic_load(load, wrench);

@@ -15,13 +15,14 @@ struct BodyTwist {
 };
 BodyTwist twist_of(const BodyState& state);
 
-// Returns the undisturbed flow at a point: current and waves, if there are any. Precondition: the water is
+// Returns the undisturbed flow at a point: current and waves, if there are any. A current with a profile is
+// that at the point's height over the level; its shear adds no acceleration. Precondition: the water is
 // known. Complexity: O(components) in waves.
-FlowAtBody flow_at_body(const WaterState& water, const Vec3& current_W, const Vec3& p_W);
+FlowAtBody flow_at_body(const WaterState& water, const Current& current, const Vec3& p_W);
 
 // Returns the state of a body that the load formulas need. outcome: its buoyancy at the pose, status kOk.
 // No heap allocation. Complexity: O(1) in water at rest where the volume scales the coefficients.
-HydrodynamicState hydrodynamic_state(const Body& body, const WaterState& water, const Vec3& current_W,
+HydrodynamicState hydrodynamic_state(const Body& body, const WaterState& water, const Current& current,
                                      const Pose& pose, const BodyTwist& twist, const BodyOutcome& outcome);
 
 // Adds the body's drag and added mass to its wrench, and what they contribute to its bounds. Sets the status
@@ -37,7 +38,7 @@ BodyLoads to_loads(const Body& body, const BodyWrench& buoyancy, const FlowAtBod
 
 // Completes the wrench of a body that has drag, added mass or the loads output: adds drag and added mass, and
 // sets `loads`, if it is not nullptr. wrench: the buoyant one of `buoyancy`, whose status is kOk.
-void add_loads(const Body& body, const WaterState& water, const Vec3& current_W, const Pose& pose,
+void add_loads(const Body& body, const WaterState& water, const Current& current, const Pose& pose,
                const BodyTwist& twist, const BodyOutcome& buoyancy, BodyWrench& wrench, BodyLoads* loads);
 
 }  // namespace buoyancy

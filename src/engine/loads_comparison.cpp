@@ -31,7 +31,7 @@ double relative_error(ImmersionScaling scaling, const WrenchLimits& limits, cons
 
 // Returns the sum [m/s] of the speeds of which the water's velocity consists.
 double water_velocity_scale(const Scene& scene) {
-  double scale = scene.current_W().norm();
+  double scale = scene.current().max_speed();
   if (scene.receives_sea()) return scale + kReceivedWaveVelocity;
   if (scene.sea() == nullptr) return scale;
   for (const WaveComponent& wave : scene.sea()->components())

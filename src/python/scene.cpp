@@ -57,10 +57,10 @@ py::object query(PyObject* self, const Arguments<9>& arguments) {
   QueryWater water = water_of(*scene);
   if (is_given(sea)) {
     water = water_of(instance_of<SeaObject>(sea).sea);
-    if (water.current_W != scene->current_W()) {
-      throw InputException({"sea", "a current of [" + format_vector(water.current_W) + "] m/s",
+    if (water.current != scene->current()) {
+      throw InputException({"sea", "a current of [" + format_vector(water.current.velocity_W) + "] m/s",
                             "the scene's, [" + format_vector(scene->current_W()) + "] m/s", "",
-                            "Give both the same velocity below [water.current]"});
+                            "Give both the same velocity or profile below [water.current]"});
     }
     if (water.waves != nullptr && !body.prepared_mesh->wave_mesh) {
       throw InputException({"sea", "waves, with a scene in water at rest",

@@ -124,7 +124,7 @@ QuerySea sea_of_file(const std::filesystem::path& path) {
     throw InputException({path.string(), "waves = \"received\"", "the wave systems themselves",
                           "no messages are received in a query", "Describe the sea by Sea(waves=...)"});
   }
-  return value_or_throw(QuerySea::make(description.sea, description.water));
+  return value_or_throw(QuerySea::make(description.sea, description.water, description.current_profile));
 }
 
 std::unique_ptr<SeaObject> make_sea(const std::optional<std::filesystem::path>& path,
@@ -207,7 +207,7 @@ void define_sea(py::module_& module) {
   add_water_properties(type, [](const SeaObject& object) { return object.sea.water(); });
   add_property(
       type, "current", [](const SeaObject& object) { return object.sea.current_W(); },
-      "(3,), m/s: of the current, which carries the waves, world frame.");
+      "(3,), m/s: of the current at the level, which carries the waves, world frame.");
   add_property(
       type, "axes",
       [](const SeaObject& object) {

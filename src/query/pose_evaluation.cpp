@@ -100,7 +100,7 @@ class RangeEvaluation {
   void complete(std::size_t i, const Pose& pose, const BodyOutcome& outcome) {
     BodyWrench wrench = to_wrench(body_.id, outcome);
     if (outcome.status == BodyStatus::kOk && (body_.hydrodynamics != nullptr || !loads_.empty())) {
-      add_loads(body_, now_, water_.current_W, pose, twist_of(state_at(body_, poses_, i)), outcome, wrench,
+      add_loads(body_, now_, water_.current, pose, twist_of(state_at(body_, poses_, i)), outcome, wrench,
                 loads_.empty() ? nullptr : &loads_[i]);
     }
     store(wrench, wrenches_, i);
@@ -123,13 +123,13 @@ class RangeEvaluation {
 }  // namespace
 
 QueryWater water_of(const QuerySea& sea) {
-  return {.at_rest = sea.water(), .waves = sea.waves(), .current_W = sea.current_W()};
+  return {.at_rest = sea.water(), .waves = sea.waves(), .current = sea.current()};
 }
 
 QueryWater water_of(const Scene& scene) {
   return {.at_rest = scene.water(),
           .waves = scene.prepared_sea(),
-          .current_W = scene.current_W(),
+          .current = scene.current(),
           .is_known = !scene.receives_sea()};
 }
 

@@ -19,7 +19,7 @@ namespace buoyancy {
 struct QueryWater {
   Water at_rest;
   std::shared_ptr<const PreparedSea> waves;  // nullptr: the water is at rest
-  Vec3 current_W = Vec3::Zero();             // [m/s], beside the waves
+  Current current;                           // beside the waves
   bool is_known = true;                      // false: every pose gets BodyStatus::kNoSea
 };
 

@@ -26,12 +26,14 @@ WaterAtPoint without_waves(const Water& water, const Vec3& p_W) {
 
 }  // namespace
 
-Expected<QuerySea> QuerySea::make(const SeaDescription& description, const Water& water) {
-  if (description.systems.empty()) return QuerySea(water, nullptr, description.current_W);
+Expected<QuerySea> QuerySea::make(const SeaDescription& description, const Water& water,
+                                  CurrentProfile profile) {
+  Current current{description.current_W, std::move(profile)};
+  if (description.systems.empty()) return QuerySea(water, nullptr, std::move(current));
   Expected<Sea> sea = Sea::make(description, water);
   if (!sea) return make_error(std::move(sea.error()));
-  if (sea->is_still()) return QuerySea(water, nullptr, description.current_W);
-  return QuerySea(water, std::make_shared<const PreparedSea>(*std::move(sea)), description.current_W);
+  if (sea->is_still()) return QuerySea(water, nullptr, std::move(current));
+  return QuerySea(water, std::make_shared<const PreparedSea>(*std::move(sea)), std::move(current));
 }
 
 Expected<QuerySea> QuerySea::parse(std::string_view text, const std::string& name,
@@ -42,7 +44,7 @@ Expected<QuerySea> QuerySea::parse(std::string_view text, const std::string& nam
     return make_error({name, "waves = \"received\"", "the wave systems themselves",
                        "no messages are received in a query", "List the systems, or leave waves out"});
   }
-  Expected<QuerySea> sea = make(description->sea, description->water);
+  Expected<QuerySea> sea = make(description->sea, description->water, description->current_profile);
   if (!sea) {
     Error error = std::move(sea.error());
     error.subject = name + ": [water], " + error.subject;
@@ -70,10 +72,11 @@ void water_at_points(const QuerySea& sea, std::span<const double> points,
       const Vec3 p_W{points[3 * i], points[3 * i + 1], points[3 * i + 2]};
       const SeaAtTime* const now = moving.at(utimes[utimes.size() == 1 ? 0 : i]);
       const WaterAtPoint point = now == nullptr ? without_waves(sea.water(), p_W) : now->at(p_W);
+      const Vec3 current_W = sea.current().at(sea.water(), p_W);
       if (!out.pressures.empty()) out.pressures[i] = point.pressure;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto n = static_cast<Eigen::Index>(axis);
-        if (!out.velocities.empty()) out.velocities[3 * i + axis] = sea.current_W()[n] + point.velocity_W[n];
+        if (!out.velocities.empty()) out.velocities[3 * i + axis] = current_W[n] + point.velocity_W[n];
         if (!out.accelerations.empty()) out.accelerations[3 * i + axis] = point.acceleration_W[n];
       }
     }

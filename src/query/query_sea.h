@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/current.h"
 #include "base/error.h"
 #include "wave_loads/prepared_sea.h"
 #include "waves/sea_description.h"
@@ -17,8 +18,10 @@ namespace buoyancy {
 // Immutable, and cheap to copy: copies share the sea.
 class QuerySea {
  public:
-  // Errors: those of Sea::make().
-  static Expected<QuerySea> make(const SeaDescription& description, const Water& water);
+  // profile: of the current; description.current_W is its velocity at the level. Empty: it has none. Errors:
+  // those of Sea::make().
+  static Expected<QuerySea> make(const SeaDescription& description, const Water& water,
+                                 CurrentProfile profile = {});
   // text: the sections [world] and [water] of a scene file (docs/scene_file.md); directory: resolves the
   // relative paths of files of wave components. name: identifies the text in errors. Errors: those of
   // parse_water() and Sea::make(), and waves = "received".
@@ -28,19 +31,20 @@ class QuerySea {
   const Water& water() const { return water_; }
   // nullptr: the water is at rest, since no amplitude is above 0.
   const std::shared_ptr<const PreparedSea>& waves() const { return waves_; }
-  const Vec3& current_W() const { return current_W_; }  // [m/s], which carries the waves
+  const Vec3& current_W() const { return current_.velocity_W; }  // [m/s], at the level: it carries the waves
+  const Current& current() const { return current_; }
   HorizontalAxes axes() const { return horizontal_axes(water_.up_W); }
   // Returns whether a unit vector is up of this water, to rounding: normalising up again may change its last
   // bits.
   bool has_up(const Vec3& up_W) const { return (up_W - water_.up_W).cwiseAbs().maxCoeff() <= 1e-15; }
 
  private:
-  QuerySea(const Water& water, std::shared_ptr<const PreparedSea> waves, const Vec3& current_W)
-      : water_(water), waves_(std::move(waves)), current_W_(current_W) {}
+  QuerySea(const Water& water, std::shared_ptr<const PreparedSea> waves, Current current)
+      : water_(water), waves_(std::move(waves)), current_(std::move(current)) {}
 
   Water water_;
   std::shared_ptr<const PreparedSea> waves_;
-  Vec3 current_W_;
+  Current current_;
 };
 
 // Sets out[i] to the elevation of the surface over the level [m] at (x1[i], x2[i]) [m] along the horizontal

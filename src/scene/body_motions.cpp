@@ -182,8 +182,8 @@ class LoadedBody {
     DisplacementMoments<double> moments;
     moments.volume = displaced.volume;
     moments.moment = displaced.volume * (q_WB * displaced.lever_B);
-    State state{.stiffness_W =
-                    water.density * water.gravity * stiffness(moments, water.up_W) + of_weights(q_WB, water)};
+    State state{.stiffness_W = water.density * water.gravity * stiffness(moments, water.up_W) +
+                               of_weights(q_WB, water)};
     const double rounding = stiffness_error(*mesh_, water) * mesh_->diagonal * mesh_->diagonal;
     if (state.stiffness_W.cwiseAbs().maxCoeff() <= rounding) state.stiffness_W.setZero();
     return state;
@@ -244,9 +244,17 @@ bool limit_step(const MotionMatrices& matrices, const State& state, const Vec6& 
   return true;
 }
 
-// Everything that the motions of a body depend on, beside the scene's water and current.
-BodyKey key_of(const Body& body, const BodyKeys& keys, const RigidBodyMass& own) {
+// [m/s], at the centre of the drag where the body starts.
+Vec3 current_at_start(const Body& body, const Scene& scene) {
+  if (body.hydrodynamics == nullptr || !body.hydrodynamics->coefficients().drag) return scene.current_W();
+  const Vec3& center_B = body.hydrodynamics->coefficients().drag->center_B;
+  return scene.current().at(scene.water(), body.dynamics.position + body.dynamics.orientation * center_B);
+}
+
+// Everything that the motions of a body depend on, beside the scene's water.
+BodyKey key_of(const Body& body, const BodyKeys& keys, const RigidBodyMass& own, const Vec3& current_W) {
   BodyKey key = keys.floating(body, own);
+  append(current_W, key);
   append(own.inertia_B, key);
   append(body.dynamics.orientation.coeffs(), key);
   append(body.dynamics.linear_velocity, key);
@@ -356,7 +364,8 @@ std::vector<MotionsOfBody> scene_motions(const Scene& scene, std::size_t max_ver
     if (!given.dynamics.given || !own) continue;
     Body body = given;
     if (const Expected<DynamicsSpec> start = starts.start_of(given)) body.dynamics = *start;
-    BodyKey key = key_of(body, keys, *own);
+    const Vec3 current_W = current_at_start(body, scene);
+    BodyKey key = key_of(body, keys, *own, current_W);
     auto found = known.find(key);
     if (found == known.end()) {
       const std::size_t more = body.prepared_mesh->mesh.surface.x.size();
@@ -364,7 +373,7 @@ std::vector<MotionsOfBody> scene_motions(const Scene& scene, std::size_t max_ver
       if (entry.left_out) continue;
       vertices += more;
       const std::optional<BodyMotions> motions =
-          body_motions(body, meshes.of(*body.prepared_mesh), scene.water(), scene.current_W());
+          body_motions(body, meshes.of(*body.prepared_mesh), scene.water(), current_W);
       found = known.emplace(std::move(key), motions ? std::make_shared<const BodyMotions>(*motions) : nullptr)
                   .first;
     }

@@ -71,7 +71,8 @@ struct BodyMotions {
   double added_mass_ratio = 0.0;
 };
 
-// mesh: the body's, with its tree. The attitude is that of the body's `orientation`. Returns nullopt without
+// mesh: the body's, with its tree. current_W: [m/s], at the centre of the drag where the body starts. The
+// attitude is that of the body's `orientation`. Returns nullopt without
 // a mass, and where a number is beyond double's range. Complexity: O(vertices).
 std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh& mesh, const Water& water,
                                         const Vec3& current_W);

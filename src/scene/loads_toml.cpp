@@ -80,15 +80,6 @@ void read_immersion(TomlTable& table, ImmersionScaling& immersion) {
 
 }  // namespace
 
-void parse_current(TomlTable& water, SceneParseContext& context, Vec3& current_W) {
-  const toml::table* toml = water.table("current");
-  if (toml == nullptr) return;
-  TomlTable table(*toml, "[water.current]", context);
-  table.read("velocity", current_W, "m/s");
-  table.finish();
-  if (!table.has("velocity")) table.fail_missing("velocity", "velocity = [x, y, z] (m/s, W)");
-}
-
 void parse_drag(TomlTable& body, const std::string& body_name, SceneParseContext& context,
                 std::optional<DragDescription>& drag) {
   const toml::table* toml = body.table("drag");

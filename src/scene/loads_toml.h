@@ -1,4 +1,4 @@
-// Reads [water.current], [body.drag] and [body.added_mass] of a scene file.
+// Reads [body.drag] and [body.added_mass] of a scene file.
 #pragma once
 
 #include "scene/scene_file.h"
@@ -7,7 +7,6 @@
 namespace buoyancy {
 
 // Each leaves the value unchanged if its table is absent. Errors go into the context.
-void parse_current(TomlTable& water, SceneParseContext& context, Vec3& current_W);
 void parse_drag(TomlTable& body, const std::string& body_name, SceneParseContext& context,
                 std::optional<DragDescription>& drag);
 void parse_added_mass(TomlTable& body, const std::string& body_name, SceneParseContext& context,

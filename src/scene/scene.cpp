@@ -269,7 +269,7 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
   scene.water_ = description.water;
   scene.receives_sea_ = description.waves_received;
   scene.text_fingerprint_ = description.text_fingerprint;
-  scene.current_W_ = description.sea.current_W;
+  scene.current_ = {description.sea.current_W, description.current_profile};
   Expected<std::shared_ptr<const PreparedSea>> sea = make_sea(description);
   if (!sea) return make_error(std::move(sea.error()));
   scene.sea_ = *std::move(sea);

@@ -78,8 +78,9 @@ class Scene {
   bool receives_sea() const { return receives_sea_; }
   // One per wave system; none if the water is at rest.
   const std::vector<WaveSystemReport>& wave_systems() const { return wave_systems_; }
-  const Vec3& current_W() const { return current_W_; }         // [m/s], of the water beside the waves
-  const std::vector<Body>& bodies() const { return bodies_; }  // in the order of the file
+  const Vec3& current_W() const { return current_.velocity_W; }  // [m/s], at the level: it carries the waves
+  const Current& current() const { return current_; }            // of the water beside the waves
+  const std::vector<Body>& bodies() const { return bodies_; }    // in the order of the file
   const std::vector<std::unique_ptr<PreparedMesh>>& meshes() const { return meshes_; }
   const Body* find(std::int32_t id) const;  // nullptr if unknown; O(1)
   // Index into bodies(), or nullopt if unknown. likely: an index that is tried first, see IdIndex. O(1).
@@ -99,7 +100,7 @@ class Scene {
   std::shared_ptr<const PreparedSea> sea_;
   bool receives_sea_ = false;
   std::vector<WaveSystemReport> wave_systems_;
-  Vec3 current_W_ = Vec3::Zero();
+  Current current_;
   std::uint64_t text_fingerprint_ = 0;
   std::vector<std::unique_ptr<PreparedMesh>> meshes_;
   std::vector<std::unique_ptr<HydrodynamicModel>> hydrodynamic_models_;

@@ -17,6 +17,7 @@
 #include "scene/toml_nesting.h"
 #include "scene/toml_table.h"
 #include "scene/up_axis.h"
+#include "scene/water_toml.h"
 
 namespace buoyancy {
 namespace {
@@ -43,7 +44,7 @@ void read_water(const toml::table& toml, SceneDescription& scene, const std::fil
   table.read("level", scene.water.level, NumberRange::any("m"));
   table.read("density", scene.water.density, NumberRange::from_zero("kg/m^3"));
   scene.waves_received = parse_sea(table, directory, context, scene.sea);
-  parse_current(table, context, scene.sea.current_W);
+  parse_current(table, context, scene.sea.current_W, scene.current_profile);
   table.finish();
 }
 

@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/current.h"
 #include "base/error.h"
 #include "geometry/mesh_import.h"
 #include "geometry/mesh_validation.h"
@@ -162,7 +163,8 @@ inline constexpr std::array<std::pair<std::string_view, OpenPolicy>, 2> kOpenPol
 struct SceneDescription {
   std::string name;  // the file's name as given, or the name of the text
   Water water;
-  SeaDescription sea;           // without wave systems: water at rest, or with a current
+  SeaDescription sea;              // without wave systems: water at rest, or with a current
+  CurrentProfile current_profile;  // sea.current_W is its velocity at the level; empty: there is none
   bool waves_received = false;  // waves = "received": the sea comes in messages, `sea` has the current alone
   // A hash of what the text states besides [body.client], names of files and comments; 0 without a text.
   std::uint64_t text_fingerprint = 0;

@@ -176,8 +176,16 @@ Facts water_facts(const Scene& scene) {
   facts.line("water").say("up . x < {} m", water.level).add("up", water.up_W, "up [{}]");
   facts.add("level", water.level).add("density", water.density, "{} kg/m^3");
   facts.add("gravity", water.gravity, "gravity {} m/s^2");
-  if (scene.current_W() != Vec3::Zero()) {
+  const CurrentProfile& profile = scene.current().profile;
+  if (profile.empty() && scene.current_W() != Vec3::Zero()) {
     facts.line("current").add("current", scene.current_W(), "[{}] m/s");
+  }
+  if (!profile.empty()) {
+    Json& points = facts.list("current_profile");
+    for (const CurrentPoint& point : profile) {
+      facts.line("current").say("[{}] m/s at a height of {} m", point.velocity_W, point.height);
+      points.push_back({{"height", point.height}, {"velocity", point.velocity_W}});
+    }
   }
   return facts;
 }

@@ -56,11 +56,12 @@ Vec3 screw_velocity(const Vec3& rotation, const Vec3& velocity) {
 }  // namespace
 
 HydrodynamicMotion::HydrodynamicMotion(const Body& body, const RigidBody& rigid, const Water& water,
-                                       const Vec3& current_W)
+                                       const Current& current)
     : body_(&body),
       rigid_(rigid),
       water_(water),
-      current_W_(current_W),
+      current_(current),
+      current_W_(current.velocity_W),
       mass_B_(mass_at_center(rigid)),
       added_mass_B_(added_mass_at_center(body, rigid)),
       modes_(rigid, added_mass_B_) {
@@ -94,6 +95,12 @@ HydrodynamicMotion::Immersions HydrodynamicMotion::immersions(double displaced, 
   return immersions;
 }
 
+Vec3 HydrodynamicMotion::current_at(const Water& water, const Pose& pose) const {
+  const HydrodynamicCoefficients& coefficients = body_->hydrodynamics->coefficients();
+  const Vec3& center_B = coefficients.drag ? coefficients.drag->center_B : coefficients.added_mass->center_B;
+  return current_.at(water, pose.p_WB + pose.q_WB.normalized() * center_B);
+}
+
 void HydrodynamicMotion::take(const BodyWrench& wrench, const BodyState& sent, double lead_time,
                               const WaterState& water, RigidBodyState& state) {
   still_ = wrench;
@@ -104,6 +111,7 @@ void HydrodynamicMotion::take(const BodyWrench& wrench, const BodyState& sent, d
   HydrodynamicState moving;
   moving.motion = {pose.q_WB.normalized().toRotationMatrix(), to_vec3(sent.linear_velocity),
                    to_vec3(sent.angular_velocity)};
+  current_W_ = current_at(*water.at_rest, pose);
   moving.at_drag.water.velocity_W = moving.at_added_mass.water.velocity_W = current_W_;
   moving.at_drag.immersion.value = now.drag;
   moving.at_added_mass.immersion.value = now.added_mass;
@@ -115,7 +123,7 @@ void HydrodynamicMotion::take(const BodyWrench& wrench, const BodyState& sent, d
   half_jump_.setZero();
   if (const auto* const added = body_->hydrodynamics->added_mass_placement()) {
     const Vec3 center_W = pose.p_WB + moving.motion.R_WB * added->center_B;
-    const Vec3 flow_W = flow_at_body(water, current_W_, center_W).velocity_W;
+    const Vec3 flow_W = flow_at_body(water, current_, center_W).velocity_W;
     if (taken_ && now.added_mass != immersion_.added_mass) {
       const Vec3 mean_flow_W = 0.5 * (flow_W_ + flow_W);
       const Vec6 before = relative_twist(state, mean_flow_W);
@@ -245,13 +253,14 @@ void HydrodynamicMotion::finish_step(Integrator integrator, double step, RigidBo
   if (integrator == Integrator::kVelocityVerlet) change_velocities(0.5 * step, state);
 }
 
-double HydrodynamicMotion::added_kinetic_energy(const RigidBodyState& state, double immersion) const {
-  const Vec6 twist = relative_twist(state, current_W_);
+double HydrodynamicMotion::added_kinetic_energy(const RigidBodyState& state, double immersion,
+                                                const Vec3& current_W) const {
+  const Vec6 twist = relative_twist(state, current_W);
   return 0.5 * immersion * twist.dot(added_mass_B_ * twist);
 }
 
 double HydrodynamicMotion::added_kinetic_energy(const RigidBodyState& state) const {
-  return added_kinetic_energy(state, immersion_.added_mass);
+  return added_kinetic_energy(state, immersion_.added_mass, current_W_);
 }
 
 std::optional<double> HydrodynamicMotion::added_kinetic_energy_at_pose(const RigidBodyState& state) const {
@@ -259,7 +268,7 @@ std::optional<double> HydrodynamicMotion::added_kinetic_energy_at_pose(const Rig
   const BuoyancyResult result = buoyancy(body_->solver, pose, water_, body_->reference_B);
   if (result.status != BuoyancyStatus::kOk) return std::nullopt;
   const double displaced = result.volume - flooded_volume(rigid_, pose, water_);
-  return added_kinetic_energy(state, immersions(displaced, pose).added_mass);
+  return added_kinetic_energy(state, immersions(displaced, pose).added_mass, current_at(water_, pose));
 }
 
 }  // namespace buoyancy

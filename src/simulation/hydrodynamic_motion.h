@@ -37,8 +37,9 @@ namespace buoyancy {
 
 class HydrodynamicMotion {
  public:
-  // body: has a hydrodynamic model; it must outlive this object.
-  HydrodynamicMotion(const Body& body, const RigidBody& rigid, const Water& water, const Vec3& current_W);
+  // body: has a hydrodynamic model; it must outlive this object. A current with a profile is uniform in each
+  // step: that at the centre of the drag, or of the added mass without drag, in the state that was sent.
+  HydrodynamicMotion(const Body& body, const RigidBody& rigid, const Water& water, const Current& current);
 
   // Replaces the rigid body after a change of the condition of its compartments or tanks.
   void set_rigid_body(const RigidBody& rigid);
@@ -66,7 +67,9 @@ class HydrodynamicMotion {
   };
   // displaced: [m^3], net of the open compartments, whose flooded volume in water at rest is added here.
   Immersions immersions(double displaced, const Pose& pose) const;
-  double added_kinetic_energy(const RigidBodyState& state, double immersion) const;
+  double added_kinetic_energy(const RigidBodyState& state, double immersion, const Vec3& current_W) const;
+  // [m/s], at the centre that the constructor names.
+  Vec3 current_at(const Water& water, const Pose& pose) const;
 
   // The twist is relative to water that has this velocity everywhere.
   Vec6 relative_twist(const RigidBodyState& state, const Vec3& water_velocity_W) const;
@@ -82,7 +85,8 @@ class HydrodynamicMotion {
   const Body* body_;
   RigidBody rigid_;
   Water water_;
-  Vec3 current_W_;
+  Current current_;
+  Vec3 current_W_;                    // [m/s], of this step
   Mat6 mass_B_ = Mat6::Zero();        // M
   Mat6 added_mass_B_ = Mat6::Zero();  // A
   AddedMassModes modes_;

@@ -161,9 +161,8 @@ HighestNaturalFrequency highest_natural_frequency(const Body& body, const RigidB
   if (body.hydrodynamics != nullptr && body.hydrodynamics->coefficients().added_mass) {
     added_mass = {.matrix_B = added_mass_at_center(body, rigid),
                   .scaling = body.hydrodynamics->coefficients().added_mass->immersion};
-    *energy += HydrodynamicMotion(body, rigid, water, Vec3::Zero())
-                   .added_kinetic_energy_at_pose(state)
-                   .value_or(0.0);
+    *energy +=
+        HydrodynamicMotion(body, rigid, water, Current{}).added_kinetic_energy_at_pose(state).value_or(0.0);
   }
 
   const WaterplaneStiffness load(mesh, rigid, water);

@@ -107,7 +107,7 @@ Expected<Simulation> Simulation::make(const Scene& scene, const SimulationOption
     if (body.subdivision != nullptr) simulated.condition = initial_condition(*body.subdivision);
     if (body.hydrodynamics != nullptr) {
       simulated.hydrodynamics =
-          std::make_unique<HydrodynamicMotion>(body, *rigid, scene.water(), scene.current_W());
+          std::make_unique<HydrodynamicMotion>(body, *rigid, scene.water(), scene.current());
       simulation.has_hydrodynamics_ = true;
     }
     simulation.bodies_.push_back(std::move(simulated));
@@ -122,7 +122,7 @@ Expected<Simulation> Simulation::make(const Scene& scene, const SimulationOption
 
 Simulation::Simulation(const Scene& scene, const SimulationOptions& options)
     : water_(scene.water()),
-      current_W_(scene.current_W()),
+      current_speed_(scene.current().max_speed()),
       has_waves_(scene.sea() != nullptr || scene.receives_sea()),
       receives_sea_(scene.receives_sea()),
       depth_(std::numeric_limits<double>::infinity()),
@@ -199,7 +199,7 @@ double Simulation::available_energy(const SimulatedBody& body) const {
   const double height =
       std::abs(water_.up_W.dot(body.state.center_W) - water_.level) + mesh.diagonal + wave_height_;
   const double squared_speeds =
-      body.state.velocity_W.squaredNorm() + current_W_.squaredNorm() + wave_speed_ * wave_speed_;
+      body.state.velocity_W.squaredNorm() + current_speed_ * current_speed_ + wave_speed_ * wave_speed_;
   return mass * (water_.gravity * height + squared_speeds) + body.energy.max_kinetic;
 }
 

@@ -94,7 +94,7 @@ class Simulation {
   // True if the service receives the waves. The water's velocity in them is then not known here.
   bool receives_sea() const { return receives_sea_; }
   // True if the scene has a current, which does work on the bodies with drag or added mass.
-  bool has_current() const { return current_W_ != Vec3::Zero(); }
+  bool has_current() const { return current_speed_ > 0.0; }
   const SimulationOptions& options() const { return options_; }
 
  private:
@@ -106,7 +106,7 @@ class Simulation {
   void apply(const ConditionSchedule::Event& event);
 
   Water water_;
-  Vec3 current_W_;
+  double current_speed_;  // [m/s], the largest at any height
   bool has_waves_ = false;
   bool receives_sea_ = false;
   double depth_ = 0.0;              // [m]

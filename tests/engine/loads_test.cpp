@@ -1,5 +1,6 @@
 // Requests about bodies with drag and added mass, and the loads output.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -297,6 +298,44 @@ TEST(RequestHandlerWithLoads, WaterMovesWithCurrentAndWaves) {
   }
 }
 
+// At the centre of the drag, else of the added mass, else at the origin of the body, at rest and in waves.
+TEST(RequestHandlerWithLoads, CurrentIsThatAtTheHeightOfTheLoad) {
+  const std::string profile =
+      "[[water.current.profile]]\nheight = 0\nvelocity = [0.8, 0, 0]\n"
+      "[[water.current.profile]]\nheight = -4\nvelocity = [0, 0.4, 0]\n";
+  const auto box = [](int id, const std::string& more) {
+    return "[[body]]\nid = " + std::to_string(id) + "\nshape = { type = \"box\" }\noutputs = [\"wrench\", " +
+           "\"loads\"]\n" + more;
+  };
+  const std::string drag = "[body.drag]\nlinear = [1, 1, 1, 1, 1, 1]\ncenter = [0, 0, -0.2]\n";
+  const std::string mass = "[body.added_mass]\nmatrix = [5, 6, 7, 8, 9, 10]\ncenter = [0, 0, 0.3]\n";
+  const std::vector<double> offsets{-0.2, 0.3, -0.2, 0.0};
+  const std::string swell = "[[water.waves]]\ntype = \"regular\"\nheight = 0.3\nperiod = 3\ndirection = 20\n";
+  for (const std::string& waves : {std::string(), swell}) {
+    const Scene scene = scene_of("[water]\nlevel = 10\n" + profile + waves + box(1, drag) + box(2, mass) +
+                                 box(3, drag + mass) + box(4, ""));
+    WaterAtTime times(scene);
+    const WaterState water = times.move_to(kNow, 0.0).water;
+    for (const double height : {0.1, -1.0, -3.0, -9.0}) {
+      const Pose pose{.p_WB = Vec3(1, 2, 10.0 + height)};
+      for (std::size_t i = 0; i < 4; ++i) {
+        const Body& of = scene.bodies()[i];
+        BodyOutcome outcome;
+        evaluate(of, water, {.status = BodyStatus::kOk, .pose = pose}, outcome);
+        BodyWrench wrench = to_wrench(of.id, outcome);
+        BodyLoads loads;
+        add_loads(of, water, scene.current(), pose, {}, outcome, wrench, &loads);
+        const double share = std::clamp((height + offsets[i]) / -4.0, 0.0, 1.0);
+        Vec3 expected = (1.0 - share) * Vec3(0.8, 0, 0) + share * Vec3(0, 0.4, 0);
+        if (water.waves != nullptr) {
+          expected += water.waves->at(pose.p_WB + Vec3(0, 0, offsets[i])).velocity_W;
+        }
+        EXPECT_LE((to_vec3(loads.water_velocity) - expected).norm(), 1e-13) << height << ", body " << of.id;
+      }
+    }
+  }
+}
+
 // A body that moves as the water does feels no drag, and of added mass s A times the water's acceleration.
 TEST(RequestHandlerWithLoads, BodyThatDriftsWithTheWaterFeelsItsAcceleration) {
   const Scene scene = scene_of(
@@ -513,7 +552,7 @@ TEST(FlowAtBody, BoundsGrowWithDistanceSteepnessAndComponents) {
     const Scene scene = scene_of("[water]\nlevel = " + format_shortest(level) + "\nwaves = [" + waves +
                                  "]\n[[body]]\nid = 1\nshape = { type = \"box\" }\n");
     WaterAtTime water(scene);
-    const FlowAtBody motion = flow_at_body(water.move_to(kNow, 0.0).water, Vec3::Zero(), p_W);
+    const FlowAtBody motion = flow_at_body(water.move_to(kNow, 0.0).water, Current{}, p_W);
     return Errors{motion.velocity_error, motion.acceleration_error};
   };
   const std::string wave = "{ type = \"regular\", height = 0.2, period = 3.0 }";

@@ -2,6 +2,7 @@
 // scene must be within the ranges of docs/scene_file.md. If every body is a small generated shape and the sea
 // has few components, the scene is also prepared, reported on and evaluated for each body. No mesh is read.
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <type_traits>
@@ -174,6 +175,10 @@ void check_description(const SceneDescription& scene) {
     check_coefficients(body);
   }
   require(scene.sea.current_W.allFinite(), "the current is finite");
+  require(scene.current_profile.size() <= kMaxCurrentPoints, "the profile is limited");
+  for (const CurrentPoint& point : scene.current_profile) {
+    require(point.velocity_W.allFinite() && std::isfinite(point.height), "the profile is finite");
+  }
 }
 
 bool is_small_and_generated(const SceneDescription& scene) {

@@ -103,7 +103,7 @@ TEST(LoadsToml, RejectsWrongInputWithFileAndLine) {
       {added_mass("matrx = [1, 1, 1, 1, 1, 1]"), "nearest known key is 'matrix'"},
       {scene_with_crate("drag = 3\n"), "pool.toml:4: body 7: drag = 3; expected a table"},
       {scene_with_crate("[water.current]\nspeed = 1\n"),
-       "pool.toml:5: [water.current]: unknown key 'speed'; expected one of velocity."},
+       "pool.toml:5: [water.current]: unknown key 'speed'; expected one of velocity, profile."},
       {scene_with_crate("[water.current]\n"), "pool.toml:4: [water.current]: no key 'velocity'"},
       {scene_with_crate("[water.current]\nvelocity = [1, 2]\n"),
        "expected an array of 3 finite numbers (m/s)"},

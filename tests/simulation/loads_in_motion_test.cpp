@@ -306,5 +306,20 @@ position = [0, 0, 0.05]
   }
 }
 
+// Fully submerged and neutrally buoyant at its height, it ends with the water there.
+TEST(Current, CarriesABodyAsAtTheHeightOfItsDrag) {
+  const Scene scene = scene_of(
+      "[water]\ndensity = 1000\n[[water.current.profile]]\nheight = 0\nvelocity = [0.8, 0, 0]\n"
+      "[[water.current.profile]]\nheight = -8\nvelocity = [0, 0.4, 0]\n[[body]]\nid = 1\nshape = { type = "
+      "\"sphere\", radius = 0.2, segments = 24 }\n[body.drag]\nlinear = [30, 30, 30, 1, 1, 1]\nquadratic = "
+      "[20, 20, 20, 1, 1, 1]\n[body.added_mass]\nmatrix = [9, 9, 9, 0, 0, 0]\n[body.client]\ndensity = "
+      "1000\nposition = [0, 0, -2]\n");
+  Simulation simulation = simulation_of(scene, {.step = 0.02});
+  run_in_process(scene, simulation, 3000);
+  const Vec3& velocity_W = simulation.bodies()[0].state.velocity_W;
+  EXPECT_NEAR(simulation.bodies()[0].state.center_W.z(), -2.0, 1e-6);
+  EXPECT_LE((velocity_W - Vec3(0.6, 0.1, 0.0)).norm(), 1e-6);
+}
+
 }  // namespace
 }  // namespace buoyancy

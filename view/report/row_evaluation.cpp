@@ -39,7 +39,7 @@ WaterState water_of(const RowLoads& row, const Scene& scene, WaterAtTime& water)
 
 }  // namespace
 
-RowEvaluation evaluate_row(const Body& body, const WaterState& water, const Vec3& current_W,
+RowEvaluation evaluate_row(const Body& body, const WaterState& water, const Current& current,
                            const BodyState& state, double lead_time, const BodyCondition* condition) {
   const ValidatedPose pose = validate_pose(state, lead_time);
   BodyOutcome outcome;
@@ -52,7 +52,7 @@ RowEvaluation evaluate_row(const Body& body, const WaterState& water, const Vec3
   RowEvaluation evaluation{.wrench = to_wrench(body.id, outcome), .loads = std::nullopt};
   BodyWrench& wrench = evaluation.wrench;
   if (!has_loads(body) || wrench.status != BodyStatus::kOk) return evaluation;
-  buoyancy::add_loads(body, water, current_W, pose.pose, twist_of(state), outcome, wrench,
+  buoyancy::add_loads(body, water, current, pose.pose, twist_of(state), outcome, wrench,
                       &evaluation.loads.emplace());
   if (wrench.status != BodyStatus::kOk) evaluation.loads.reset();
   return evaluation;
@@ -71,7 +71,7 @@ void add_loads(const Scene& scene, const Body& body, const std::vector<KeptRow>&
       continue;
     }
     const std::optional<BodyLoads> computed =
-        evaluate_row(body, water_of(source, scene, water), scene.current_W(), source.state, source.lead_time,
+        evaluate_row(body, water_of(source, scene, water), scene.current(), source.state, source.lead_time,
                      row.condition.get())
             .loads;
     if (!computed) continue;

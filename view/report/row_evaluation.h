@@ -19,7 +19,7 @@ struct RowEvaluation {
 
 // lead_time: [s], of the state and of the water. condition: of the body's compartments and tanks; nullptr: it
 // has none, or their condition is unknown.
-RowEvaluation evaluate_row(const Body& body, const WaterState& water, const Vec3& current_W,
+RowEvaluation evaluate_row(const Body& body, const WaterState& water, const Current& current,
                            const BodyState& state, double lead_time, const BodyCondition* condition);
 
 // Fills in the loads of the rows of a body that has loads: the recorded ones, and others, computed in the

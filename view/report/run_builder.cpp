@@ -117,7 +117,7 @@ void RunBuilder::make_rigid(const Body& body, const std::shared_ptr<const BodyCo
   if (!rigid) return;
   shown.rigid = *std::move(rigid);
   if (body.hydrodynamics != nullptr) {
-    shown.motion.emplace(body, *shown.rigid, scene_.water(), scene_.current_W());
+    shown.motion.emplace(body, *shown.rigid, scene_.water(), scene_.current());
   }
 }
 
@@ -214,7 +214,7 @@ std::shared_ptr<RowLoads> RunBuilder::add(const RecordedState& recorded) {
   BodyWrench wrench =
       recorded.wrench ? *recorded.wrench
                       : evaluate_row(body, water_.move_to(recorded.utime, recorded.lead_time).water,
-                                     scene_.current_W(), recorded.state, recorded.lead_time, condition.get())
+                                     scene_.current(), recorded.state, recorded.lead_time, condition.get())
                             .wrench;
   if (recorded.force_torque) {
     wrench.force = recorded.force_torque->force;

@@ -108,7 +108,7 @@ class Sea:
     density: Final[float]
     gravity: Final[float]
     up: Final[Array]
-    current: Final[Array]  # m/s
+    current: Final[Array]  # m/s, at the level
     axes: Final[Tuple[Array, Array]]
     has_waves: Final[bool]
 
