@@ -93,7 +93,7 @@ Output equilibrium_output(const LoadedBody& loaded, const HydrostaticsOptions& o
   progress.clear();
   const Water& water = loaded.water();
   PointRows points{.points = plan.water_points, .rows = {}};
-  PartRows parts{.density = water.density, .names = {}, .rows = {}};
+  PartRows parts;
   if (loaded.shares) parts.names = loaded.shares->names;
   const double keel = keel_of(loaded, plan);
   for (const Equilibrium& at : found.attitudes) {

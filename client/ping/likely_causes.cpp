@@ -101,7 +101,8 @@ void add_status_causes(const Samples& samples, std::vector<std::string>& causes)
 std::optional<double> weight_ratio(const Scene& scene, const Samples& samples) {
   const Water& water = scene.water();
   const double weight = water.density * water.gravity;
-  if (!(weight > 0.0)) return std::nullopt;
+  // In layered water the force is not proportional to the volume.
+  if (!(weight > 0.0) || !water.layers.empty()) return std::nullopt;
   bool along_up = true;
   const std::optional<double> ratio =
       common_value(samples, 1.0, [&](const DifferingWrench& sample) -> std::optional<double> {

@@ -99,8 +99,8 @@ std::string parts_text(const PartRows& parts, std::size_t row) {
   for (std::size_t i = 0; i < parts.names.size(); ++i) {
     const DisplacedPart& part = parts.rows[row][i];
     text += fmt::format("           {} displaces {:.6g} m^3, {:.6g} kg, centre ({:.6g}, {:.6g}, {:.6g}) m\n",
-                        parts.names[i], part.volume, parts.density * part.volume, part.center_B.x(),
-                        part.center_B.y(), part.center_B.z());
+                        parts.names[i], part.volume, part.mass, part.center_B.x(), part.center_B.y(),
+                        part.center_B.z());
   }
   return text;
 }
@@ -112,7 +112,7 @@ Json parts_json(const PartRows& parts, std::size_t row) {
     entries.push_back(
         {{"name", parts.names[i]},
          {"volume", part.volume},
-         {"mass", parts.density * part.volume},
+         {"mass", part.mass},
          {"center_of_buoyancy", part.volume != 0.0 ? std::optional(part.center_B) : std::nullopt}});
   }
   return entries;

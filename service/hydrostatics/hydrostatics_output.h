@@ -32,7 +32,6 @@ struct PointRows {
 
 // What each part of a body displaces, per attitude; empty: it has neither parts nor open compartments.
 struct PartRows {
-  double density = 0.0;  // [kg/m^3], of the water
   std::vector<std::string> names;
   std::vector<std::vector<DisplacedPart>> rows;
 };

@@ -41,7 +41,7 @@ State state_at(const PageSubject& subject, const Pose& pose) {
   const Water& water = *subject.water;
   const std::optional<FloatingState> found = floating_state(*subject.body, pose, water);
   const Hydrostatics hydrostatics = found ? found->hydrostatics : Hydrostatics{};
-  const Vec3 force_W = water.density * water.gravity * hydrostatics.volume * water.up_W;
+  const Vec3 force_W = hydrostatics.density * water.gravity * hydrostatics.volume * water.up_W;
   State state{};
   auto* next = state.data();
   const auto add = [&next](const auto& numbers) { next = std::copy(numbers.begin(), numbers.end(), next); };

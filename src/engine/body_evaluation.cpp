@@ -183,7 +183,8 @@ bool try_evaluate_from_bounds(const Body& body, const FullySubmerged& submerged,
   if (water.waves != nullptr) {
     return try_evaluate_from_bounds_in_waves(body, submerged, *water.waves, validated, outcome);
   }
-  if (!try_buoyancy_from_bounds(body.solver, submerged, validated.pose, *water.at_rest, outcome.result)) {
+  if (!try_buoyancy_from_bounds(body.solver, submerged, validated.pose, *water.at_rest, body.reference_B,
+                                outcome.result)) {
     return false;
   }
   complete_outcome(validated.quaternion_normalised, {}, outcome);

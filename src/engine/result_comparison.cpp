@@ -86,7 +86,7 @@ void compare_hydrostatics(const BodyHydrostatics& now, const BodyHydrostatics& b
                           center + radius);
   }
   const double lever = mesh.max_lever_arm(body.reference_B) + length;
-  const double weight = water.density * water.gravity;  // N/m^3
+  const double weight = deepest_density(water) * water.gravity;  // N/m^3
   for (std::size_t row = 0; row < 6; ++row) {
     for (std::size_t column = 0; column < 6; ++column) {
       double tolerance = weight * area;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hydrostatics/density_steps.h"
 #include "hydrostatics/immersed_part.h"
 #include "scene/body_mass.h"
 
@@ -11,9 +12,10 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-// [m^4], W axes, relative to p_WB.
-Vec3 volume_moment(const BuoyancyResult& result) {
-  return result.volume * result.center_of_buoyancy_W;
+// The weight of a result in the mean of centres of buoyancy: its volume [m^3], or in layered water, where the
+// centre is that of the displaced mass, its force along up [N].
+double center_weight(const BuoyancyResult& result, const Water& water) {
+  return water.layers.empty() ? result.volume : water.up_W.dot(result.force_W);
 }
 
 void add_scaled(const WaveBuoyancyResult& compartment, double factor, WaveBuoyancyResult& sum) {
@@ -78,7 +80,7 @@ double add_subdivision_load(const Body& body, const BodyCondition* condition, co
   BuoyancyResult& result = sum.result;
   if (result.status != BuoyancyStatus::kOk) return 0.0;
   const Subdivision& subdivision = *body.subdivision;
-  Vec3 moment_W = volume_moment(result);
+  Vec3 moment_W = center_weight(result, *water.at_rest) * result.center_of_buoyancy_W;
   double flooded_volume = 0.0;
   for (std::size_t i = 0; i < subdivision.compartments.size(); ++i) {
     const BodyCompartment& compartment = subdivision.compartments[i];
@@ -93,13 +95,15 @@ double add_subdivision_load(const Body& body, const BodyCondition* condition, co
       return 0.0;
     }
     add_scaled(lost, factor, sum);
-    moment_W += factor * volume_moment(lost.result);
+    const double weight = center_weight(lost.result, *water.at_rest);
+    moment_W += factor * Vec3(weight * lost.result.center_of_buoyancy_W);
     flooded_volume -= factor * lost.result.volume;
   }
   if (flooded_volume != 0.0) {
     const HydrostaticMesh& mesh = body.solver.mesh();
     const bool has_center = std::abs(result.volume) > mesh.volume_tolerance();
-    result.center_of_buoyancy_W = has_center ? Vec3(moment_W / result.volume) : Vec3::Zero();
+    const double weight = center_weight(result, *water.at_rest);
+    result.center_of_buoyancy_W = has_center && weight != 0.0 ? Vec3(moment_W / weight) : Vec3::Zero();
   }
   if (!subdivision.tanks.empty()) {
     const Mat3 R_WB = pose.q_WB.normalized().toRotationMatrix();
@@ -119,18 +123,25 @@ std::optional<Hydrostatics> subdivided_hydrostatics(const Body& body, const Body
                                                     const Water& water, const Pose& pose) {
   const Subdivision& subdivision = *body.subdivision;
   const HydrostaticMesh& hull = body.solver.mesh();
-  ImmersedPart sum;
-  double volume_tolerance = 0.0;
-  const auto add = [&](const HydrostaticMesh& mesh, double factor) {
-    const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
-    add_scaled(immersed_part(mesh, plane), mesh.center_B - hull.center_B, factor, sum);
-    volume_tolerance += std::abs(factor) * mesh.volume_tolerance();
+  const auto for_each_volume = [&](const auto& visit) {
+    visit(hull, 1.0);
+    for (std::size_t i = 0; i < subdivision.compartments.size(); ++i) {
+      const BodyCompartment& compartment = subdivision.compartments[i];
+      visit(compartment.prepared_mesh->mesh, factor_of(compartment, flooded_at(subdivision, condition, i)));
+    }
   };
-  add(hull, 1.0);
-  for (std::size_t i = 0; i < subdivision.compartments.size(); ++i) {
-    const BodyCompartment& compartment = subdivision.compartments[i];
-    add(compartment.prepared_mesh->mesh, factor_of(compartment, flooded_at(subdivision, condition, i)));
-  }
+  double volume_tolerance = 0.0;
+  for_each_volume([&](const HydrostaticMesh& mesh, double factor) {
+    volume_tolerance += std::abs(factor) * mesh.volume_tolerance();
+  });
+  const auto part_at = [&](double depth) {
+    ImmersedPart sum;
+    for_each_volume([&](const HydrostaticMesh& mesh, double factor) {
+      const WaterPlane plane = lowered(water_plane_in_body(pose, water, mesh.center_B), depth);
+      add_scaled(immersed_part(mesh, plane), mesh.center_B - hull.center_B, factor, sum);
+    });
+    return sum;
+  };
   LiquidSum liquids;  // about B's origin
   const Vec3 up_B = pose.q_WB.normalized().conjugate() * water.up_W;
   for (std::size_t i = 0; i < subdivision.tanks.size(); ++i) {
@@ -139,8 +150,8 @@ std::optional<Hydrostatics> subdivided_hydrostatics(const Body& body, const Body
   }
   const std::optional<Vec3> center_B = total_center_of_mass(body, water, liquids);
   liquids.moment -= liquids.mass * body.reference_B;  // now about the reference point
-  return hydrostatics_of(sum, hull.center_B, volume_tolerance, pose.q_WB, water, body.reference_B, center_B,
-                         liquids);
+  return hydrostatics_in(water, part_at, hull.center_B, volume_tolerance, pose.q_WB, body.reference_B,
+                         center_B, liquids);
 }
 
 }  // namespace buoyancy

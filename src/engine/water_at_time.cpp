@@ -7,8 +7,9 @@ namespace {
 
 // Is a received sea the same sea in both scenes?
 bool is_same_medium(const Scene& a, const Scene& b) {
-  return a.water().density == b.water().density && a.water().gravity == b.water().gravity &&
-         a.water().up_W == b.water().up_W && a.current() == b.current();
+  return a.water().density == b.water().density && a.water().layers == b.water().layers &&
+         a.water().gravity == b.water().gravity && a.water().up_W == b.water().up_W &&
+         a.current() == b.current();
 }
 
 }  // namespace

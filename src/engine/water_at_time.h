@@ -17,8 +17,8 @@ class WaterAtTime {
   // scene must outlive this object or the next set_scene().
   explicit WaterAtTime(const Scene& scene) : scene_(&scene), seas_(scene) {}
 
-  // Received seas remain where both scenes receive them and agree about the water's density, up, gravity and
-  // current; else `seas`, those of the new scene, hold. The previous scene is not accessed again.
+  // Received seas remain where both scenes receive them and agree about the water's densities, up, gravity
+  // and current; else `seas`, those of the new scene, hold. The previous scene is not accessed again.
   void set_scene(const Scene& scene, SeaTimeline seas) noexcept;
 
   // See SeaTimeline::receive().

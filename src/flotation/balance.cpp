@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hydrostatics/density_steps.h"
 #include "hydrostatics/level_search.h"
 
 namespace buoyancy {
@@ -19,19 +20,24 @@ Vec3 turned(const Vec3& up_B, const Vec3& step) {
   return (std::cos(angle) * up_B + (std::sin(angle) / angle) * step).normalized();
 }
 
-Balance::Balance(const FloatingBody& body, const Water& water, std::optional<double> submerged_density)
+Balance::Balance(const FloatingBody& body, Water water, bool is_submerged)
     : body_(&body),
-      water_(&water),
-      is_submerged_(submerged_density.has_value()),
-      density_(submerged_density.value_or(water.density)),
-      target_volume_(body.total_mass() / density_) {
+      water_(std::move(water)),
+      is_submerged_(is_submerged),
+      steps_(deepest_density(water_) / water_.density),
+      target_volume_(body.total_mass() / water_.density) {
+  const double density = deepest_density(water_);
   const double lever = body.reach() + (body.center_of_mass_B() - body.center_B()).norm();
   double area = 0.0;
   for (const FloatingBody::SignedVolume& volume : body.volumes()) area += volume.placed.mesh->area;
-  gradient_rounding_ = (density_ * body.volume_tolerance() + body.liquid_tolerance()) * lever;
+  gradient_rounding_ = (density * body.volume_tolerance() + body.liquid_tolerance()) * lever;
   // The rounding errors of a volume and of a mass both act at the lever.
   energy_rounding_ = gradient_rounding_ + 8.0 * kEpsilon * body.total_mass() * lever;
-  curvature_rounding_ = 64.0 * kEpsilon * density_ * (area * lever * lever + body.volume() * lever);
+  for_each_step(water_, [&](double step, double depth) {
+    energy_rounding_ +=
+        depth * water_.density * step * (body.volume_tolerance() + 8.0 * kEpsilon * body.volume());
+  });
+  curvature_rounding_ = 64.0 * kEpsilon * density * (area * lever * lever + body.volume() * lever);
   for (const Tank& tank : body.tanks()) {
     curvature_rounding_ += 64.0 * kEpsilon * tank.density * tank.mesh->area * lever * lever;
   }
@@ -39,11 +45,12 @@ Balance::Balance(const FloatingBody& body, const Water& water, std::optional<dou
 
 BalancedAttitude Balance::balanced(const Vec3& up_B, double height, const DisplacedSum& displaced) const {
   const Vec3 of_mass = mass_moment(*body_, liquid_sum(*body_, up_B, FreeSurfaces::kNo));
-  const Vec3 Q = of_mass - density_ * displaced.moment;
+  const Vec3 Q = of_mass - water_.density * displaced.moment;
   const double along = up_B.dot(Q);
   return {.up_B = up_B,
           .height = height,
-          .energy = along + height * (body_->total_mass() - density_ * displaced.volume),
+          .energy = along + height * (body_->total_mass() - water_.density * displaced.volume) -
+                    water_.density * displaced.depth_moment,
           .lever_moment = Q,
           .gradient = Q - along * up_B,
           .area = 0.0,
@@ -51,7 +58,7 @@ BalancedAttitude Balance::balanced(const Vec3& up_B, double height, const Displa
 }
 
 double Balance::slack(double energy, double area) const {
-  return std::sqrt(2.0 * std::max(energy, 0.0) * std::max(area, 0.0) / density_);
+  return std::sqrt(2.0 * std::max(energy, 0.0) * std::max(area, 0.0) / water_.density);
 }
 
 double Balance::start_slack() const {
@@ -64,24 +71,26 @@ std::optional<BalancedAttitude> Balance::at(const Vec3& up_B, const BalancedAtti
                                             double slack) const {
   constexpr int kMaxRounds = 200;
   const auto sum_at = [&](double height) {
-    return displaced_sum(*body_, WaterPlane{.up_B = up_B, .h_c = -height});
+    return displaced_sum(*body_, WaterPlane{.up_B = up_B, .h_c = -height}, water_);
   };
   if (is_submerged_) {
     const double height = -2.0 * body_->reach();
     return balanced(up_B, height, sum_at(height));
   }
-  const HeightRange range = height_range(*body_, up_B);
+  // Corrections for an allowed error hold for one waterplane.
+  if (!water_.layers.empty()) slack = 0.0;
+  const double total = steps_ * body_->volume();  // [m^3], at the largest depth
+  const HeightRange range = height_range(*body_, up_B, water_);
   if (body_->is_open()) {
     if (!(range.low < range.high)) return std::nullopt;
     if (!(sum_at(range.low).volume >= target_volume_)) return std::nullopt;
-  } else if (!(target_volume_ <= body_->volume())) {
+  } else if (!(target_volume_ <= total)) {
     return std::nullopt;
   }
 
-  const double tolerance = 0.125 * body_->volume_tolerance();
+  const double tolerance = 0.125 * steps_ * body_->volume_tolerance();
   // The secant method works on the cube root of the volume under water, or over it if that is smaller: at a
   // tip the volume grows with the cube of its height.
-  const double total = body_->volume();
   const bool is_mostly_wet = !body_->is_open() && target_volume_ > 0.5 * total;
   const auto root_of = [&](double volume) {
     return is_mostly_wet ? -std::cbrt(total - volume) : std::cbrt(volume);
@@ -134,7 +143,7 @@ void Balance::settle(BalancedAttitude& attitude, double area, const Vec3& pivot)
   // Where the body is narrow, the waterplane does not predict the volume above and below it.
   if (attitude.excess == 0.0 || !(std::abs(rise) <= kMaxRise * std::cbrt(body_->volume()))) return;
   const Vec3& k = attitude.up_B;
-  const double mass = density_ * attitude.excess;
+  const double mass = water_.density * attitude.excess;
   attitude.height += rise;
   attitude.energy -= 0.5 * mass * rise;
   attitude.lever_moment += mass * pivot;
@@ -147,14 +156,15 @@ EnergyCurvature Balance::curvature(BalancedAttitude& attitude) const {
   const Vec3& k = attitude.up_B;
   const Vec3 u = k.unitOrthogonal();
   const Vec3 v = k.cross(u);
-  const Waterline line = waterline_sum(*body_, attitude.plane(), u);
+  const Waterline line = waterline_sum(*body_, attitude.plane(), u, water_);
+  const double density = water_.density;
   double uu = 0.0;
   double uv = 0.0;
   double vv = 0.0;
   if (line.area > 0.0) {
-    uu = density_ * (line.uu - line.u * line.u / line.area);
-    uv = density_ * (line.uv - line.u * line.v / line.area);
-    vv = density_ * (line.vv - line.v * line.v / line.area);
+    uu = density * (line.uu - line.u * line.u / line.area);
+    uv = density * (line.uv - line.u * line.v / line.area);
+    vv = density * (line.vv - line.v * line.v / line.area);
   }
   if (!body_->tanks().empty()) {
     const Mat3 free_surface = liquid_sum(*body_, k, FreeSurfaces::kYes).free_surface;

@@ -5,10 +5,15 @@
 // world's up in B and Q = m (G - o) - rho M_o, the energy is k . Q + z (m - rho V), its gradient in k is Q,
 // and where m = rho V its Hessian over the sphere of k is rho J_F - (k . Q) I, with J_F the second moments of
 // the waterplane about its centroid.
+//
+// In layered water rho is the density at the surface, and V, M_o and J_F are sums over the terms of the
+// pressure (displaced_sum.h). The energy then has one more term, -rho times their depth moment. Where the
+// density of the body is that of a layer, any height within the layer is the one that is found.
 #pragma once
 
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "flotation/displaced_sum.h"
 
@@ -47,13 +52,16 @@ struct EnergyCurvature {
 
 class Balance {
  public:
-  Balance(const FloatingBody& body, const Water& water) : Balance(body, water, std::nullopt) {}
+  Balance(const FloatingBody& body, const Water& water) : Balance(body, water, false) {}
 
   // The balance of a body that is fully submerged at every attitude, as in water of its own mean density:
   // there it is neutrally buoyant, so that only the torque about the centre of all mass is left. With C the
   // centre of buoyancy, Q = m (G - C). body: no open mesh, of a volume above 0.
   static Balance submerged(const FloatingBody& body, const Water& water) {
-    return {body, water, body.total_mass() / body.volume()};
+    Water of_body = water;
+    of_body.density = body.total_mass() / body.volume();
+    of_body.layers.clear();
+    return {body, std::move(of_body), true};
   }
 
   // Finds the height at which the body displaces its mass. guess: an attitude nearby, or nullptr. slack:
@@ -71,23 +79,22 @@ class Balance {
   EnergyCurvature curvature(BalancedAttitude& attitude) const;
 
   const FloatingBody& body() const { return *body_; }
-  const Water& water() const { return *water_; }
-  double target_volume() const { return target_volume_; }            // [m^3], mass over density
-  double energy_rounding() const { return energy_rounding_; }        // [kg m], of differences of energies
-  double gradient_rounding() const { return gradient_rounding_; }    // [kg m]
+  const Water& water() const { return water_; }
+  double target_volume() const { return target_volume_; }          // [m^3], mass over density at the surface
+  double energy_rounding() const { return energy_rounding_; }      // [kg m], of differences of energies
+  double gradient_rounding() const { return gradient_rounding_; }  // [kg m]
   double curvature_rounding() const { return curvature_rounding_; }  // [kg m]
 
  private:
-  // submerged_density: [kg/m^3], of the water in which the body is neutrally buoyant; nullopt: it floats.
-  Balance(const FloatingBody& body, const Water& water, std::optional<double> submerged_density);
+  Balance(const FloatingBody& body, Water water, bool is_submerged);
   BalancedAttitude balanced(const Vec3& up_B, double height, const DisplacedSum& displaced) const;
   // Corrects an attitude for its excess by raising it by excess / area, unless that is far.
   void settle(BalancedAttitude& attitude, double area, const Vec3& pivot) const;
 
   const FloatingBody* body_;
-  const Water* water_;
+  Water water_;
   bool is_submerged_;
-  double density_;  // [kg/m^3]
+  double steps_;  // the largest density over that at the surface
   double target_volume_;
   double energy_rounding_;
   double gradient_rounding_;

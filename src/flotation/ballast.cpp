@@ -83,7 +83,7 @@ Expected<Depth> depth_at_draft(const FloatingBody& body, const Water& water, con
                          "the draft of a submerged body is not determined",
                          "Give the mass of the ballast instead");
   }
-  depth.displaced = displaced_sum(body, depth.plane);
+  depth.displaced = displaced_sum(body, depth.plane, water);
   depth.mass = water.density * depth.displaced.volume - body.total_mass();
   if (!(depth.mass > 0.0)) {
     return ballast_error(
@@ -115,7 +115,7 @@ Expected<Depth> depth_with_mass(const FloatingBody& body, const Water& water, do
     }
     depth.plane = at->plane();
   }
-  depth.displaced = displaced_sum(body, depth.plane);
+  depth.displaced = displaced_sum(body, depth.plane, water);
   return depth;
 }
 

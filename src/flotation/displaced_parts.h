@@ -9,7 +9,8 @@ namespace buoyancy {
 
 struct DisplacedPart {
   double volume = 0.0;           // [m^3], below 0 for a compartment that is open to the sea
-  Vec3 center_B = Vec3::Zero();  // [m], of the volume; NaN where it is 0
+  double mass = 0.0;             // [kg], of the displaced water
+  Vec3 center_B = Vec3::Zero();  // [m], of that mass; NaN where the volume is 0
 };
 
 // Returns what each mesh of the body displaces at a pose, in the order of body.volumes(). The volumes add up

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hydrostatics/density_steps.h"
 #include "hydrostatics/hierarchical.h"
 
 namespace buoyancy {
@@ -22,30 +23,39 @@ WaterPlane plane_of(const SignedVolume& volume, const WaterPlane& plane) {
 
 }  // namespace
 
-DisplacedSum displaced_by(const SignedVolume& volume, const WaterPlane& plane) {
-  const Displacement displaced = hierarchical(*volume.placed.mesh, plane_of(volume, plane));
-  return {volume.placed.signed_permeability * displaced.volume,
-          volume.placed.signed_permeability *
-              (volume.R_B * displaced.moment + displaced.volume * volume.offset_B)};
+DisplacedSum displaced_by(const SignedVolume& volume, const WaterPlane& plane, const Water& water) {
+  DisplacedSum sum{.volume = -0.0};  // to which a single term of -0 adds up, too
+  for_each_step(water, [&](double step, double depth) {
+    const Displacement displaced = hierarchical(*volume.placed.mesh, plane_of(volume, lowered(plane, depth)));
+    const double factor = step * volume.placed.signed_permeability;
+    sum.volume += factor * displaced.volume;
+    sum.moment += factor * (volume.R_B * displaced.moment + displaced.volume * volume.offset_B);
+    sum.depth_moment += factor * depth * displaced.volume;
+  });
+  return sum;
 }
 
-DisplacedSum displaced_sum(const FloatingBody& body, const WaterPlane& plane) {
+DisplacedSum displaced_sum(const FloatingBody& body, const WaterPlane& plane, const Water& water) {
   DisplacedSum sum;
   for (const SignedVolume& volume : body.volumes()) {
-    const DisplacedSum part = displaced_by(volume, plane);
+    const DisplacedSum part = displaced_by(volume, plane, water);
     sum.volume += part.volume;
     sum.moment += part.moment;
+    sum.depth_moment += part.depth_moment;
   }
   return sum;
 }
 
-DisplacedBounds displaced_bounds(const FloatingBody& body, const WaterPlane& plane) {
+DisplacedBounds displaced_bounds(const FloatingBody& body, const WaterPlane& plane, const Water& water) {
   DisplacedBounds bounds;
   for (const SignedVolume& volume : body.volumes()) {
     const HydrostaticMesh& mesh = *volume.placed.mesh;
-    const Displacement displaced = hierarchical(mesh, plane_of(volume, plane));
-    const double error = std::abs(volume.placed.signed_permeability) *
-                         (mesh.rounding_bound() + displaced.rounding + volume.plane_rounding);
+    double rounding = 0.0;
+    for_each_step(water, [&](double step, double depth) {
+      const Displacement displaced = hierarchical(mesh, plane_of(volume, lowered(plane, depth)));
+      rounding += step * (mesh.rounding_bound() + displaced.rounding + volume.plane_rounding);
+    });
+    const double error = std::abs(volume.placed.signed_permeability) * rounding;
     const Vec3 reference = volume.R_B.transpose() * (body.center_of_mass_B() - volume.placed.position_B);
     bounds.volume += error;
     bounds.moment += error * mesh.max_lever_arm(reference);
@@ -99,25 +109,28 @@ double liquid_moment_bound(const FloatingBody& body, const Vec3& point_B) {
   return bound;
 }
 
-Waterline waterline_sum(const FloatingBody& body, const WaterPlane& plane, const Vec3& u) {
+Waterline waterline_sum(const FloatingBody& body, const WaterPlane& plane, const Vec3& u,
+                        const Water& water) {
   const Vec3 v = plane.up_B.cross(u);
   Waterline sum;
   for (const SignedVolume& volume : body.volumes()) {
     const Mat3 R = volume.R_B.transpose();
-    const Waterline line = waterline(*volume.placed.mesh, plane_of(volume, plane),
-                                     {.u = R * u, .v = R * v, .origin = R * -volume.offset_B});
-    const double factor = volume.placed.signed_permeability;
-    sum.area += factor * line.area;
-    sum.u += factor * line.u;
-    sum.v += factor * line.v;
-    sum.uu += factor * line.uu;
-    sum.uv += factor * line.uv;
-    sum.vv += factor * line.vv;
-    if (factor < 0.0) continue;
-    sum.min_u = std::min(sum.min_u, line.min_u);
-    sum.max_u = std::max(sum.max_u, line.max_u);
-    sum.min_v = std::min(sum.min_v, line.min_v);
-    sum.max_v = std::max(sum.max_v, line.max_v);
+    for_each_step(water, [&](double step, double depth) {
+      const Waterline line = waterline(*volume.placed.mesh, plane_of(volume, lowered(plane, depth)),
+                                       {.u = R * u, .v = R * v, .origin = R * -volume.offset_B});
+      const double factor = step * volume.placed.signed_permeability;
+      sum.area += factor * line.area;
+      sum.u += factor * line.u;
+      sum.v += factor * line.v;
+      sum.uu += factor * line.uu;
+      sum.uv += factor * line.uv;
+      sum.vv += factor * line.vv;
+      if (factor < 0.0 || depth > 0.0) return;
+      sum.min_u = std::min(sum.min_u, line.min_u);
+      sum.max_u = std::max(sum.max_u, line.max_u);
+      sum.min_v = std::min(sum.min_v, line.min_v);
+      sum.max_v = std::max(sum.max_v, line.max_v);
+    });
   }
   return sum;
 }
@@ -131,9 +144,10 @@ bool is_boundary_wet(const FloatingBody& body, const WaterPlane& plane) {
                      [&](std::int32_t i) { return of_mesh.height(mesh.vertex(i)) < 0.0; });
 }
 
-HeightRange height_range(const FloatingBody& body, const Vec3& up_B) {
+HeightRange height_range(const FloatingBody& body, const Vec3& up_B, const Water& water) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   HeightRange range{kInfinity, -kInfinity};
+  double deepest = 0.0;  // [m], top of a layer
   for (const SignedVolume& volume : body.volumes()) {
     const HydrostaticMesh& mesh = *volume.placed.mesh;
     const Vec3 up = volume.R_B.transpose() * up_B;
@@ -148,6 +162,8 @@ HeightRange height_range(const FloatingBody& body, const Vec3& up_B) {
     }
     range.low = -lowest + 1e-12 * mesh.diagonal;
   }
+  if (!body.is_open()) for_each_step(water, [&](double, double depth) { deepest = depth; });
+  range.low -= deepest;
   return range;
 }
 

@@ -314,7 +314,7 @@ std::string_view to_string(AttitudeFamily family) {
 
 FlotationOutcome outcome_by_mass(const FloatingBody& body, const Water& water) {
   if (body.is_open()) return FlotationOutcome::kFloats;
-  return outcome_by_mass(body.total_mass(), water.density * body.volume());
+  return outcome_by_mass(body.total_mass(), deepest_density(water) * body.volume());
 }
 
 FlotationOutcome outcome_by_mass(double mass, double displaced) {

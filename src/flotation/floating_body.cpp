@@ -6,6 +6,7 @@
 
 #include "base/format.h"
 #include "flotation/displaced_sum.h"
+#include "hydrostatics/density_steps.h"
 #include "hydrostatics/lowest_vertex.h"
 
 namespace buoyancy {
@@ -138,19 +139,21 @@ std::optional<FloatingState> floating_state(const FloatingBody& body, const Pose
   const Vec3 moment_of_mass = mass_moment(body, liquids);
   const Vec3 total_center_B = total_center_of_mass_B(body, liquids);
   liquids.moment -= liquids.mass * to_mass;  // now about the centre of mass
+  const auto part_at = [&](double depth) { return immersed_sum(body, lowered(plane, depth)); };
   const std::optional<Hydrostatics> hydrostatics =
-      hydrostatics_of(immersed_sum(body, plane), body.center_B(), body.volume_tolerance(), pose.q_WB, water,
+      hydrostatics_in(water, part_at, body.center_B(), body.volume_tolerance(), pose.q_WB,
                       body.center_of_mass_B(), total_center_B, liquids);
   if (!hydrostatics) return std::nullopt;
 
-  const DisplacedSum displaced = displaced_sum(body, plane);
-  const DisplacedBounds bounds = displaced_bounds(body, plane);
+  const DisplacedSum displaced = displaced_sum(body, plane, water);
+  const DisplacedBounds bounds = displaced_bounds(body, plane, water);
   const Vec3& k = plane.up_B;
   const double weight = body.total_mass() * water.gravity;       // [N]
   const double specific_weight = water.density * water.gravity;  // [N/m^3]
   FloatingState state{.hydrostatics = *hydrostatics};
-  state.energy = water.gravity * (k.dot(moment_of_mass) - plane.h_c * body.total_mass()) -
-                 specific_weight * (k.dot(displaced.moment) - plane.h_c * displaced.volume);
+  state.energy =
+      water.gravity * (k.dot(moment_of_mass) - plane.h_c * body.total_mass()) -
+      specific_weight * (k.dot(displaced.moment) - plane.h_c * displaced.volume + displaced.depth_moment);
   state.force_W = (specific_weight * displaced.volume - weight) * water.up_W;
   const Vec3 about_mass = displaced.moment - displaced.volume * to_mass;
   const Vec3 couple = specific_weight * about_mass - water.gravity * liquids.moment;

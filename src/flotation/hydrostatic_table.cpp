@@ -8,6 +8,7 @@
 #include "base/angles.h"
 #include "base/format.h"
 #include "flotation/displaced_sum.h"
+#include "hydrostatics/density_steps.h"
 #include "hydrostatics/triangle_clip.h"
 
 namespace buoyancy {
@@ -110,15 +111,24 @@ std::optional<HydrostaticRow> HydrostaticTable::row(double draft, double trim) c
   const Vec3 on_water_B = midship_ * axes_.forward_B + (keel_ + draft) * axes_.up_B;
   const WaterPlane plane{.up_B = up_B, .h_c = up_B.dot(on_water_B - body_->center_B())};
   if (!std::isfinite(plane.h_c) || is_boundary_wet(*body_, plane)) return std::nullopt;
-  const DisplacedSum displaced = displaced_sum(*body_, plane);
+  DisplacedSum displaced = displaced_sum(*body_, plane, water_);
   const Vec3 forward_in_water = up_at(axes_, {0.0, trim + 0.5 * std::numbers::pi});
-  const Waterline line = waterline_sum(*body_, plane, forward_in_water);
+  Waterline line = waterline_sum(*body_, plane, forward_in_water, water_);
+  double density = water_.density;
+  if (!water_.layers.empty()) {
+    const Water unlayered{.up_W = water_.up_W, .level = water_.level, .density = water_.density};
+    const double volume = displaced_sum(*body_, plane, unlayered).volume;
+    const double mean = mean_step(water_, displaced.volume, volume);
+    density *= mean;
+    displaced = {.volume = volume, .moment = displaced.moment / mean};
+    for (double* integral : {&line.area, &line.u, &line.v, &line.uu, &line.uv, &line.vv}) *integral /= mean;
+  }
 
   HydrostaticRow row;
   row.draft = draft;
   row.trim = trim;
   row.volume = displaced.volume;
-  row.mass = water_.density * row.volume;
+  row.mass = density * row.volume;
   const bool displaces = row.volume > body_->volume_tolerance();
   const Vec3 center_B =
       displaces ? Vec3(body_->center_B() + displaced.moment / row.volume) : Vec3::Constant(kNaN);
@@ -148,7 +158,7 @@ std::optional<HydrostaticRow> HydrostaticTable::row(double draft, double trim) c
   const double kg = !knows_mass_ ? kNaN : axes_.up_B.dot(total_center_of_mass_B(*body_, liquids)) - keel_;
   // The virtual rise of the centre of mass by a free surface, times the displaced mass.
   const auto rise = [&](const Vec3& across) { return across.dot(liquids.free_surface * across); };
-  row.mass_per_cm = 0.01 * water_.density * row.waterplane_area;
+  row.mass_per_cm = 0.01 * density * row.waterplane_area;
   row.moment_per_cm = (row.mass * (row.km_l - kg) - rise(forward_in_water)) / (100.0 * lpp_);
   row.moment_per_degree =
       (row.mass * (row.km_t - kg) - rise(up_B.cross(forward_in_water))) * std::sin(kRadiansPerDegree);

@@ -37,7 +37,8 @@ struct FormCoefficients {
   double waterplane = 0.0;  // Cwp = A / (L B)
 };
 
-// Quotients whose divisor is 0 are NaN, and what depends on an unknown centre of mass.
+// Quotients whose divisor is 0 are NaN, and what depends on an unknown centre of mass. In layered water: what
+// hydrostatics.h says about it; drafts are under the surface, and so are LWL, BWL and the section at midship.
 struct HydrostaticRow {
   double draft = 0.0;              // [m]
   double trim = 0.0;               // [rad]

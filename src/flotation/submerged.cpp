@@ -56,7 +56,7 @@ std::string_view to_string(VerticalMotion motion) {
 std::optional<SubmergedRest> submerged_rest(const FloatingBody& body, const Water& water,
                                             const ShipAxes& axes) {
   if (body.is_open() || !(body.volume() > body.volume_tolerance())) return std::nullopt;
-  const double buoyancy = water.density * water.gravity * body.volume();  // [N]
+  const double buoyancy = deepest_density(water) * water.gravity * body.volume();  // [N]
   const RestSearch search = lowest_attitude(Balance::submerged(body, water), axes);
   SubmergedRest rest;
   if (search.lowest) {

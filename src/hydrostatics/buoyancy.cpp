@@ -184,6 +184,29 @@ BuoyancyResult buoyancy_at_plane(const Solver& solver, const WaterPlane& plane, 
   return result;
 }
 
+// Computes buoyancy() of the water above the layers, as if it had none.
+BuoyancyResult buoyancy_above_layers(const Solver& solver, const Pose& pose, const Water& water,
+                                     const Vec3& reference_B) {
+  const Immersion quick = quick_immersion(solver.mesh(), pose, water);
+  if (is_decided_by_bounds(solver, quick)) {
+    BuoyancyResult result;
+    set_result_from_bounds(submerged_constants(solver.mesh(), water, reference_B), quick, pose, water,
+                           result);
+    return result;
+  }
+  return buoyancy_at_plane(solver, solver.plane_in_body(pose, water), pose, water, reference_B);
+}
+
+// Returns whether the body crosses no layer's top, which quick bounds decide.
+bool bounds_decide_layers(const Solver& solver, const Pose& pose, const Water& water) {
+  for (std::size_t i = 0; i < water.layers.size(); ++i) {
+    const Immersion quick = quick_immersion(solver.mesh(), pose, water_of_step(water, i));
+    if (quick == Immersion::kDry) return true;
+    if (!is_decided_by_bounds(solver, quick)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 FullySubmerged submerged_constants(const HydrostaticMesh& mesh, const Water& water, const Vec3& reference_B) {
@@ -200,23 +223,53 @@ FullySubmerged submerged_constants(const HydrostaticMesh& mesh, const Water& wat
           .torque_error_bound = force_error_bound * mesh.max_lever_arm(reference_B)};
 }
 
+void add_layers(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B,
+                BuoyancyResult& result) {
+  if (result.status != BuoyancyStatus::kOk || result.immersion == Immersion::kDry) return;
+  const Vec3& up_W = water.up_W;
+  double lift = up_W.dot(result.force_W);              // [N]
+  Vec3 moment_W = lift * result.center_of_buoyancy_W;  // [N m]
+  for (std::size_t i = 0; i < water.layers.size(); ++i) {
+    const BuoyancyResult term = buoyancy_above_layers(solver, pose, water_of_step(water, i), reference_B);
+    if (term.status != BuoyancyStatus::kOk) {
+      result = failed_result(term.status, result.immersion);
+      return;
+    }
+    if (term.immersion == Immersion::kDry) break;  // and the lower layers are, too
+    result.force_W += term.force_W;
+    result.torque_W += term.torque_W;
+    result.force_error_bound += term.force_error_bound;
+    result.torque_error_bound += term.torque_error_bound;
+    result.dropped_force = std::max(result.dropped_force, term.dropped_force);
+    result.dropped_torque = std::max(result.dropped_torque, term.dropped_torque);
+    const double of_term = up_W.dot(term.force_W);
+    lift += of_term;
+    moment_W += of_term * term.center_of_buoyancy_W;
+    if (lift > 0.0) result.center_of_buoyancy_W = moment_W / lift;
+  }
+  // In waves, bounds may be infinite.
+  if (!result.force_W.allFinite() || !result.torque_W.allFinite() ||
+      !result.center_of_buoyancy_W.allFinite()) {
+    result = failed_result(BuoyancyStatus::kOutOfRange, result.immersion);
+  }
+}
+
 bool try_buoyancy_from_bounds(const Solver& solver, const FullySubmerged& submerged, const Pose& pose,
-                              const Water& water, BuoyancyResult& result) {
+                              const Water& water, const Vec3& reference_B, BuoyancyResult& result) {
   const Immersion quick = quick_immersion(solver.mesh(), pose, water);
   if (!is_decided_by_bounds(solver, quick)) return false;
+  if (!water.layers.empty() && quick != Immersion::kDry && !bounds_decide_layers(solver, pose, water)) {
+    return false;
+  }
   set_result_from_bounds(submerged, quick, pose, water, result);
+  if (!water.layers.empty()) add_layers(solver, pose, water, reference_B, result);
   return true;
 }
 
 BuoyancyResult buoyancy(const Solver& solver, const Pose& pose, const Water& water, const Vec3& reference_B) {
-  const Immersion quick = quick_immersion(solver.mesh(), pose, water);
-  if (is_decided_by_bounds(solver, quick)) {
-    BuoyancyResult result;
-    set_result_from_bounds(submerged_constants(solver.mesh(), water, reference_B), quick, pose, water,
-                           result);
-    return result;
-  }
-  return buoyancy_at_plane(solver, solver.plane_in_body(pose, water), pose, water, reference_B);
+  BuoyancyResult result = buoyancy_above_layers(solver, pose, water, reference_B);
+  if (!water.layers.empty()) add_layers(solver, pose, water, reference_B, result);
+  return result;
 }
 
 void buoyancy(std::span<const BuoyancyQuery> queries, const Water& water, std::span<BuoyancyResult> results) {
@@ -238,6 +291,10 @@ void buoyancy(std::span<const BuoyancyQuery> queries, const Water& water, std::s
       if (!query.solver->has_exact_planes()) planes[i] = query.solver->plane_in_body(query.pose, water);
       results[first + i] = buoyancy_at_plane(*query.solver, planes[i], query.pose, water, query.reference_B);
     }
+  }
+  if (water.layers.empty()) return;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    add_layers(*queries[i].solver, queries[i].pose, water, queries[i].reference_B, results[i]);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "hydrostatics/density_steps.h"
 #include "hydrostatics/immersed_part.h"
 #include "hydrostatics/immersion.h"
 #include "hydrostatics/wetted_moments.h"
@@ -13,8 +14,9 @@ std::optional<Hydrostatics> hydrostatics(const HydrostaticMesh& mesh, const Pose
                                          const Vec3& reference_B,
                                          const std::optional<Vec3>& center_of_mass_B) {
   const WaterPlane plane = water_plane_in_body(pose, water, mesh.center_B);
-  return hydrostatics_of(immersed_part(mesh, plane), mesh.center_B, mesh.volume_tolerance(), pose.q_WB, water,
-                         reference_B, center_of_mass_B);
+  const auto part_at = [&](double depth) { return immersed_part(mesh, lowered(plane, depth)); };
+  return hydrostatics_in(water, part_at, mesh.center_B, mesh.volume_tolerance(), pose.q_WB, reference_B,
+                         center_of_mass_B);
 }
 
 WettedArea wetted_area(const HydrostaticMesh& mesh, const Pose& pose, const Water& water) {

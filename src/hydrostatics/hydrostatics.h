@@ -6,6 +6,11 @@
 // its metacentre, BM = I/V above it, with I the waterplane's second moment about that axis; GM is the height
 // of the metacentre above the centre of mass.
 //
+// In layered water (base/water.h) the values are those in water of the mean density of what the body
+// displaces: the volume and the wetted area are under the surface, and the centre of buoyancy is that of the
+// displaced mass. The waterplane is the sum of those in the tops of the layers, each times its step of
+// density over the mean density.
+//
 // Undefined values are NaN: points and radii that divide by V where V does not exceed its own error bound G_V
 // (HydrostaticMesh::volume_tolerance), those that divide by A where there is no waterplane, GM without a
 // centre of mass. A waterplane whose area does not exceed its error bound 64 eps A_s counts as absent: its
@@ -46,6 +51,7 @@ struct Hydrostatics {
   // the reference point; columns translation [m] and rotation [rad] about W axes through that point, which
   // moves with the body. Not symmetric where the centre of buoyancy does not lie above or below it.
   Eigen::Matrix<double, 6, 6> stiffness = Eigen::Matrix<double, 6, 6>::Zero();
+  double density = 0.0;  // [kg/m^3], mean, of the displaced water; dry: that at the surface
 };
 
 // mesh: with its tree; the whole boundary of an open mesh must be dry. pose: one for which buoyancy() returns

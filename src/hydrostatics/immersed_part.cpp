@@ -144,6 +144,7 @@ std::optional<Hydrostatics> hydrostatics_of(const ImmersedPart& part, const Vec3
   const Vec3 point_W = R_WB * (origin_B + part.point);  // from p_WB
 
   Hydrostatics result;
+  result.density = water.density;
   result.volume = moments_W.volume;
   result.wetted_area = part.wetted_area;
   add_waterplane(moments_W, point_W, water.up_W, result);

@@ -31,7 +31,8 @@ void add_scaled(const ImmersedPart& part, const Vec3& offset_B, double factor, I
 // Computes what hydrostatics() returns from an immersed part. origin_B: [m], from which `part.point` is
 // measured. volume_tolerance: [m^3], below which a volume has no centre. center_of_mass_B: of the body with
 // its liquids. liquids: about the reference point; they contribute to the stiffness and, by their free
-// surfaces, to the metacentric heights.
+// surfaces, to the metacentric heights. water: of one density; with layers see hydrostatics_in()
+// (density_steps.h).
 std::optional<Hydrostatics> hydrostatics_of(const ImmersedPart& part, const Vec3& origin_B,
                                             double volume_tolerance, const Eigen::Quaterniond& q_WB,
                                             const Water& water, const Vec3& reference_B,

@@ -148,8 +148,9 @@ constexpr const char* kSeaDoc =
     R"(The water and its waves.
 
 Sea(level=0.0, density=1025.0, gravity=9.80665, up=(0, 0, 1), depth=inf, wave_pressure="wheeler",
-    time_origin=0, ramp=0.0, waves=[...], current={"velocity": (0, 0, 0)}) takes the keys of the sections
-    [water] and [world] of a scene file, with their units, ranges and defaults (docs/scene_file.md).
+    time_origin=0, ramp=0.0, waves=[...], current={"velocity": (0, 0, 0)}, layer=[...]) takes the keys of
+    the sections [water] and [world] of a scene file, with their units, ranges and defaults
+    (docs/scene_file.md).
     waves: a dict per wave system, or one dict, such as dict(type="jonswap",
     significant_wave_height=2.0, peak_period=8.0).
 Sea(path) reads them from a scene file.

@@ -24,6 +24,17 @@ WaterAtPoint without_waves(const Water& water, const Vec3& p_W) {
   return point;
 }
 
+// Adds what the layers contribute to the pressure of the water above them.
+void add_pressure_of_layers(const Water& water, const Vec3& p_W, WaterAtPoint& point) {
+  if (!(point.height < 0.0)) return;
+  for (std::size_t i = 0; i < water.layers.size(); ++i) {
+    const Water step = water_of_step(water, i);
+    const double depth = step.level - water.up_W.dot(p_W);
+    if (!(depth > 0.0)) return;
+    point.pressure += step.density * water.gravity * depth;
+  }
+}
+
 }  // namespace
 
 Expected<QuerySea> QuerySea::make(const SeaDescription& description, const Water& water,
@@ -71,7 +82,8 @@ void water_at_points(const QuerySea& sea, std::span<const double> points,
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 p_W{points[3 * i], points[3 * i + 1], points[3 * i + 2]};
       const SeaAtTime* const now = moving.at(utimes[utimes.size() == 1 ? 0 : i]);
-      const WaterAtPoint point = now == nullptr ? without_waves(sea.water(), p_W) : now->at(p_W);
+      WaterAtPoint point = now == nullptr ? without_waves(sea.water(), p_W) : now->at(p_W);
+      if (!sea.water().layers.empty()) add_pressure_of_layers(sea.water(), p_W, point);
       const Vec3 current_W = sea.current().at(sea.water(), p_W);
       if (!out.pressures.empty()) out.pressures[i] = point.pressure;
       for (std::size_t axis = 0; axis < 3; ++axis) {

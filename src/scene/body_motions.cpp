@@ -120,7 +120,7 @@ class MotionMatrices {
 
 // Returns the rounding error [N/m] of the heave stiffness. A lever or its square scales it to rotations.
 double stiffness_error(const HydrostaticMesh& mesh, const Water& water) {
-  return 64.0 * kEpsilon * water.density * water.gravity * mesh.area;
+  return 64.0 * kEpsilon * deepest_density(water) * water.gravity * mesh.area;
 }
 
 // What a body displaces fully submerged.
@@ -182,7 +182,7 @@ class LoadedBody {
     DisplacementMoments<double> moments;
     moments.volume = displaced.volume;
     moments.moment = displaced.volume * (q_WB * displaced.lever_B);
-    State state{.stiffness_W = water.density * water.gravity * stiffness(moments, water.up_W) +
+    State state{.stiffness_W = deepest_density(water) * water.gravity * stiffness(moments, water.up_W) +
                                of_weights(q_WB, water)};
     const double rounding = stiffness_error(*mesh_, water) * mesh_->diagonal * mesh_->diagonal;
     if (state.stiffness_W.cwiseAbs().maxCoeff() <= rounding) state.stiffness_W.setZero();
@@ -313,7 +313,7 @@ std::optional<BodyMotions> body_motions(const Body& body, const HydrostaticMesh&
   motions.added_mass_ratio = *ratio;
 
   const Displaced whole = loaded.submerged();
-  const double displaced = water.density * whole.volume;  // [kg], of a closed mesh
+  const double displaced = deepest_density(water) * whole.volume;  // [kg], of a closed mesh
   const bool neutral =
       !mesh.is_open() && outcome_by_mass(rigid.mass, displaced) == FlotationOutcome::kNeutral;
   if (!neutral) {

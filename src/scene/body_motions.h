@@ -54,7 +54,8 @@ struct BodyMotions {
   std::optional<double> draft;  // [m], where the body floats
   // [m], horizontal distance of the centre of buoyancy from C there: above 0, the body turns.
   double turning_lever = 0.0;
-  // The motions of the body afloat or, if it does not float, fully submerged; unset if neither is known.
+  // The motions of the body afloat or, if it does not float, fully submerged, in layered water in the deepest
+  // layer; unset if neither is known.
   std::optional<NaturalMotions> natural;
 
   // The velocity along up at which the drag on the fully submerged body, which does not turn, balances weight

@@ -45,6 +45,7 @@ void read_water(const toml::table& toml, SceneDescription& scene, const std::fil
   table.read("density", scene.water.density, NumberRange::from_zero("kg/m^3"));
   scene.waves_received = parse_sea(table, directory, context, scene.sea);
   parse_current(table, context, scene.sea.current_W, scene.current_profile);
+  parse_layers(table, context, scene.water);
   table.finish();
 }
 

@@ -176,6 +176,13 @@ Facts water_facts(const Scene& scene) {
   facts.line("water").say("up . x < {} m", water.level).add("up", water.up_W, "up [{}]");
   facts.add("level", water.level).add("density", water.density, "{} kg/m^3");
   facts.add("gravity", water.gravity, "gravity {} m/s^2");
+  if (!water.layers.empty()) {
+    Json& layers = facts.list("layers");
+    for (const WaterLayer& layer : water.layers) {
+      facts.line("layer").say("up . x < {} m, {} kg/m^3", layer.below, layer.density);
+      layers.push_back({{"below", layer.below}, {"density", layer.density}});
+    }
+  }
   const CurrentProfile& profile = scene.current().profile;
   if (profile.empty() && scene.current_W() != Vec3::Zero()) {
     facts.line("current").add("current", scene.current_W(), "[{}] m/s");

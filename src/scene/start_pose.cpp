@@ -25,7 +25,7 @@ Vec3 heading_axis_B(const Vec3& up_before_B, const Vec3& up_after_B) {
 ReachedEquilibrium reached_by(const Body& body, const FloatingBody& floating, const Water& water) {
   ReachedEquilibrium reached;
   reached.mass = floating.total_mass();
-  reached.displaced = water.density * floating.volume();
+  reached.displaced = deepest_density(water) * floating.volume();
   reached.equilibrium = find_equilibrium_from(floating, water, body.dynamics.orientation, body.axes);
   if (reached.equilibrium) {
     reached.outcome = FlotationOutcome::kFloats;

@@ -7,6 +7,7 @@
 namespace buoyancy {
 namespace {
 
+constexpr NumberRange kDensity = NumberRange::above_zero_to(1e5, "kg/m^3");
 constexpr NumberRange kHeight = NumberRange::from_to(-1e5, 1e5, "m");
 
 // Calls read(table) for each section of a list. section: its name in the file, without brackets.
@@ -43,6 +44,30 @@ void fail_order(TomlTable& table, std::string_view key, double above, const std:
                 "sections are in the order of the water, from the top down");
 }
 
+WaterLayer read_layer(TomlTable& table, const Water& water) {
+  WaterLayer layer;
+  table.read("below", layer.below, NumberRange::any("m"));
+  table.read("density", layer.density, kDensity);
+  // Missing keys are checked last, so that a mistyped key is reported as unknown and not as missing.
+  table.finish();
+  require(table, "below", "the height of its top (m): where up . x < below");
+  require(table, "density", kDensity.describe());
+  if (table.failed()) return layer;
+  const bool is_first = water.layers.empty();
+  const double height_above = is_first ? water.level : water.layers.back().below;
+  const double density_above = deepest_density(water);
+  if (!(layer.below < height_above)) {
+    fail_order(table, "below", height_above,
+               is_first ? "the level of the water" : "that of the layer above it");
+  }
+  if (layer.density < density_above) {
+    table.fail_at("density",
+                  "at least " + format_shortest(density_above) + " kg/m^3, the density of the water above it",
+                  "lighter water rises", "Exchange the densities, or correct [water] density");
+  }
+  return layer;
+}
+
 CurrentPoint read_point(TomlTable& table, const CurrentProfile& profile) {
   CurrentPoint point;
   table.read("height", point.height, kHeight);
@@ -58,6 +83,14 @@ CurrentPoint read_point(TomlTable& table, const CurrentProfile& profile) {
 }
 
 }  // namespace
+
+void parse_layers(TomlTable& table, SceneParseContext& context, Water& water) {
+  read_sections(table, "layer", "water.layer", kMaxWaterLayers, context,
+                [&water](TomlTable& section) { water.layers.push_back(read_layer(section, water)); });
+  if (water.layers.empty() || water.density > 0.0) return;
+  table.fail("density = 0 over layers", "a density above 0 (kg/m^3)",
+             "the density of what is above the first layer is left out or wrong");
+}
 
 void parse_current(TomlTable& water, SceneParseContext& context, Vec3& velocity_W, CurrentProfile& profile) {
   const toml::table* toml = water.table("current");

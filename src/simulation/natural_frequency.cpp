@@ -133,7 +133,7 @@ double natural_frequency_bound(const Body& body, const RigidBody& rigid, const W
   const auto from_water = [&](const HydrostaticMesh& displacing) {
     const double lever = displacing.max_lever_arm(rigid.center_of_mass_B);
     const double levers = 4.0 / 3.0 * lever * lever / inertia;
-    return water.density * water.gravity * displacing.area * (1.0 / rigid.mass + levers);
+    return deepest_density(water) * water.gravity * displacing.area * (1.0 / rigid.mass + levers);
   };
   double square = from_water(mesh);
   if (rigid.contents) {

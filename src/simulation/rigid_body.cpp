@@ -177,16 +177,29 @@ double mechanical_energy(const RigidBody& body, const RigidBodyState& state, con
 std::optional<double> mechanical_energy(const RigidBody& body, const RigidBodyState& state,
                                         const Solver& solver, const Water& water) {
   const Pose pose = pose_of(body, state);
-  const BuoyancyResult result = buoyancy(solver, pose, water, body.reference_B);
+  const Water surface{
+      .up_W = water.up_W, .level = water.level, .density = water.density, .gravity = water.gravity};
+  const BuoyancyResult result = buoyancy(solver, pose, surface, body.reference_B);
   if (result.status != BuoyancyStatus::kOk) return std::nullopt;
   BodyWrench wrench;
   wrench.submerged_volume = result.volume;
   wrench.center_of_buoyancy = to_array(result.center_of_buoyancy_W);
-  double energy = mechanical_energy(body, state, wrench, water);
-  for_each_flooded(body, pose, water, [&](double volume, const Vec3& centroid_B) {
-    const double height = water.up_W.dot(pose.p_WB + pose.q_WB * centroid_B) - water.level;
-    energy += water.density * water.gravity * volume * height;
-  });
+  double energy = mechanical_energy(body, state, wrench, surface);
+  const auto add_flooded = [&](const Water& term) {
+    for_each_flooded(body, pose, term, [&](double volume, const Vec3& centroid_B) {
+      const double height = term.up_W.dot(pose.p_WB + pose.q_WB * centroid_B) - term.level;
+      energy += term.density * term.gravity * volume * height;
+    });
+  };
+  add_flooded(surface);
+  for (std::size_t i = 0; i < water.layers.size(); ++i) {
+    const Water term = water_of_step(water, i);
+    const BuoyancyResult below = buoyancy(solver, pose, term, body.reference_B);
+    if (below.status != BuoyancyStatus::kOk) return std::nullopt;
+    const double height = term.up_W.dot(pose.p_WB + below.center_of_buoyancy_W) - term.level;
+    energy -= term.density * term.gravity * below.volume * height;
+    add_flooded(term);
+  }
   return energy;
 }
 

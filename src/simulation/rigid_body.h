@@ -99,11 +99,13 @@ double flooded_volume(const RigidBody& body, const Pose& pose, const Water& wate
 // Mechanical energy [J]: kinetic energy + m g z_C - rho g V z_b, with z_C and z_b the heights of C and of the
 // centre of buoyancy over the water's level. It is 0 for a body at rest with z_C = 0 that displaces nothing.
 // The last term is the potential of the buoyancy: bringing dV to the depth d below the surface takes rho g d
-// dV. With liquids in tanks, z_C is the height of the centre of mass of all at the present attitude.
+// dV. With liquids in tanks, z_C is the height of the centre of mass of all at the present attitude. Water of
+// one density: in layered water the wrench does not tell the potential.
 double mechanical_energy(const RigidBody& body, const RigidBodyState& state, const BodyWrench& wrench,
                          const Water& water);
-// The same, with the wrench computed by the solver, for a state whose pose has no wrench yet; nullopt if the
-// solver's status is not kOk at this pose.
+// The same, with the wrench computed by the solver, for a state whose pose has no wrench yet, and for layered
+// water, where the potential is the sum over the terms of its pressure; nullopt if the solver's status is not
+// kOk at this pose.
 std::optional<double> mechanical_energy(const RigidBody& body, const RigidBodyState& state,
                                         const Solver& solver, const Water& water);
 

@@ -21,7 +21,7 @@ Load current_load(const SimulatedBody& body, const Water& water) {
 void record_energy(SimulatedBody& body, bool first, bool wrench_is_current, const Water& water) {
   EnergyStats& energy = body.energy;
   energy.current =
-      wrench_is_current
+      wrench_is_current && water.layers.empty()
           ? mechanical_energy(body.rigid, body.state, body.wrench, water)
           : mechanical_energy(body.rigid, body.state, body.body->solver, water).value_or(energy.current);
   double kinetic = kinetic_energy(body.rigid, body.state);
@@ -192,7 +192,7 @@ void Simulation::accept(const WrenchResponse& latest) {
 
 double Simulation::available_energy(const SimulatedBody& body) const {
   const HydrostaticMesh& mesh = body.body->prepared_mesh->mesh;
-  double mass = body.rigid.mass + water_.density * std::abs(mesh.volume);
+  double mass = body.rigid.mass + deepest_density(water_) * std::abs(mesh.volume);
   if (body.hydrodynamics && body.body->hydrodynamics->coefficients().added_mass) {
     mass += body.body->hydrodynamics->coefficients().added_mass->matrix.diagonal().head<3>().maxCoeff();
   }

@@ -19,9 +19,9 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // [m], of positions: beyond it, their rounding alone is larger than waves.
 constexpr double kFarthest = 1e15;
 
-Water with_level(Water water, double level) {
-  water.level = level;
-  return water;
+// Without layers, which decide nothing about the surface.
+Water with_level(const Water& water, double level) {
+  return {.up_W = water.up_W, .level = level, .density = water.density, .gravity = water.gravity};
 }
 
 // Against the highest crest and the lowest trough: kDry and kSubmerged are certain.
@@ -238,6 +238,10 @@ WaveBuoyancyResult buoyancy_in_waves(const Solver& solver, const WaveMesh& wave_
     outcome = {};
     result = failed_result(BuoyancyStatus::kOutOfRange, Immersion::kPiercing);
   }
+  if (!water.layers.empty()) {
+    add_layers(solver, pose, water, reference_B, result);
+    if (result.status != BuoyancyStatus::kOk) outcome = {.result = result};
+  }
   return outcome;
 }
 
@@ -263,7 +267,7 @@ bool try_buoyancy_in_waves_from_bounds(const Solver& solver, const FullySubmerge
   if (!(per_volume <= solver.tolerance())) return false;
   WaveBuoyancyResult calm;
   BuoyancyResult& still = calm.result;
-  if (!try_buoyancy_from_bounds(solver, submerged, pose, water, still) ||
+  if (!try_buoyancy_from_bounds(solver, submerged, pose, water, reference_B, still) ||
       still.status != BuoyancyStatus::kOk) {
     return false;
   }

@@ -5,6 +5,9 @@
 //   fast_surface, exact_surface   the load as other tools compute it, with bounds of infinity
 //                                 (wave_surface_methods.h)
 // The methods fast, improved and exact do not work in waves: they sum volumes under a plane.
+//
+// In layered water the surface moves and the tops of the layers do not: the waves are those of water of the
+// density above the layers, whose loads are added as in water at rest (add_layers()).
 #pragma once
 
 #include <array>

@@ -30,5 +30,18 @@ TEST(Current, HasTheLargestSpeedOfItsHeights) {
       2.0);
 }
 
+TEST(LayeredWater, IsASumOfTermsWithTheirOwnSurfaces) {
+  const Water water{.level = 1.0, .density = 850.0, .layers = {{0.0, 1000.0}, {-3.0, 1025.0}}};
+  EXPECT_EQ(water_of_step(water, 0).level, 0.0);
+  EXPECT_EQ(water_of_step(water, 0).density, 150.0);
+  EXPECT_EQ(water_of_step(water, 1).level, -3.0);
+  EXPECT_EQ(water_of_step(water, 1).density, 25.0);
+  EXPECT_TRUE(water_of_step(water, 1).layers.empty());
+  EXPECT_EQ(deepest_density(water), 1025.0);
+  EXPECT_EQ(deepest_density(Water{}), kSeawaterDensity);
+  const Water low{.level = -1.0, .density = 850.0, .layers = {{0.0, 1000.0}}};
+  EXPECT_EQ(water_of_step(low, 0).level, -1.0);
+}
+
 }  // namespace
 }  // namespace buoyancy

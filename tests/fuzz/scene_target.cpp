@@ -175,6 +175,14 @@ void check_description(const SceneDescription& scene) {
     check_coefficients(body);
   }
   require(scene.sea.current_W.allFinite(), "the current is finite");
+  require(scene.water.layers.size() <= kMaxWaterLayers, "the layers are limited");
+  double height = scene.water.level;
+  double density = scene.water.density;
+  for (const WaterLayer& layer : scene.water.layers) {
+    require(layer.below < height && layer.density >= density && density > 0.0, "layers are stable");
+    height = layer.below;
+    density = layer.density;
+  }
   require(scene.current_profile.size() <= kMaxCurrentPoints, "the profile is limited");
   for (const CurrentPoint& point : scene.current_profile) {
     require(point.velocity_W.allFinite() && std::isfinite(point.height), "the profile is finite");

@@ -199,7 +199,7 @@ TEST(ErrorBounds, OfSubmergedBodiesAreThoseOfRounding) {
       for (const double tolerance : {0.0, 1e-3}) {
         const Solver solver(mesh, Method::kHierarchical, tolerance);
         ASSERT_TRUE(try_buoyancy_from_bounds(solver, submerged_constants(mesh, water, reference_B), pose,
-                                             water, from_bounds));
+                                             water, reference_B, from_bounds));
         for (const BuoyancyResult& result : {from_bounds, buoyancy(solver, pose, water, reference_B)}) {
           ASSERT_EQ(result.immersion, Immersion::kSubmerged);
           expect_bound(result.force_error_bound, force, named.name);

@@ -53,6 +53,13 @@ class DescribesWaterInMotion(TestCase):
         self.assertEqual(sea.pressure([0, 0], 0, [0.5, 2], 0).tolist(), [1e4, 0.0])
         self.assertEqual(sea.elevation(0, 0, 0), 0.0)
 
+    def test_layers_and_a_current_that_changes_with_the_depth(self):
+        profile = [dict(height=0.0, velocity=[1, 0, 0]), dict(height=-4.0, velocity=[0, 0, 0])]
+        sea = buoyancy.Sea(density=850, gravity=10, layer=[dict(below=-1.0, density=1000)], current=dict(profile=profile))
+        self.assertEqual(sea.pressure(0, 0, [-1, -2], 0).tolist(), [8500.0, 18500.0])
+        self.assertEqual(sea.velocity(0, 0, -2, 0).tolist(), [0.5, 0, 0])
+        self.assertEqual(sea.current.tolist(), [1, 0, 0])
+
     def test_keys_are_those_of_the_scene_file(self):
         with self.assertRaisesRegex(buoyancy.InputError, "unknown key 'levle'.*nearest known key is 'level'"):
             buoyancy.Sea(levle=1)

@@ -45,6 +45,20 @@ TEST(QuerySea, SaysWhatIsWrongWithItsKeys) {
               HasSubstr("sea: [water]"));
 }
 
+TEST(QuerySea, LayersPressAndProfilesCarryAtTheirHeights) {
+  const std::vector<double> points{0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 0.0, 0.0, -3.0, 1.0, 2.0, -6.0};
+  const QuerySea sea = sea_of(
+      "[world]\ngravity = 10\n[water]\nlevel = 1\ndensity = 850\n[[water.layer]]\nbelow = -1\ndensity = "
+      "1000\n[[water.layer]]\nbelow = -5\ndensity = 1020\n[[water.current.profile]]\nheight = 0\nvelocity = "
+      "[1, 0, 0]\n[[water.current.profile]]\nheight = -8\nvelocity = [0, 1, 0]\n");
+  std::vector<double> pressures(4);
+  std::vector<double> velocities(12);
+  water_at_points(sea, points, std::vector<std::int64_t>{kNow}, {pressures, velocities, {}});
+  EXPECT_EQ(pressures, (std::vector<double>{0.0, 8500.0, 17000.0 + 20000.0, 17000.0 + 40000.0 + 10200.0}));
+  EXPECT_EQ(velocities,
+            (std::vector<double>{1.0, 0.0, 0.0, 0.875, 0.125, 0.0, 0.5, 0.5, 0.0, 0.125, 0.875, 0.0}));
+}
+
 TEST(QuerySea, WaterMovesWithTheCurrentToo) {
   const std::vector<double> point{1.0, 2.0, -0.5};
   for (const std::string& waves :

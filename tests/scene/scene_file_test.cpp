@@ -190,7 +190,7 @@ TEST(SceneFile, ReportsCompleteErrors) {
   EXPECT_EQ(
       parse_error("[water]\ndesnity = 1000\n" + scene_with_crate()),
       "pool.toml:2: [water]: unknown key 'desnity'; expected one of level, density, depth, wave_pressure, "
-      "time_origin, ramp, waves, current. The nearest known key is 'density'.");
+      "time_origin, ramp, waves, current, layer. The nearest known key is 'density'.");
 }
 
 TEST(SceneFile, SuggestsNearestKeyInEveryTable) {

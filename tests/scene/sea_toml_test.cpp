@@ -166,7 +166,7 @@ TEST(SeaToml, RejectsWrongKeysOfTheWater) {
       {"wave_pressure = 1", "wave_pressure = 1"},
       {"wave = 3",
        "unknown key 'wave'; expected one of level, density, depth, wave_pressure, time_origin, "
-       "ramp, waves, current. The nearest known key is 'waves'."},
+       "ramp, waves, current, layer. The nearest known key is 'waves'."},
       {"waves = \"recieved\"",
        "waves = \"recieved\"; expected a table [[water.waves]] for each wave system, or \"received\""},
       {"waves = 3", "waves = 3; expected a table"},

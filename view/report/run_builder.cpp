@@ -47,9 +47,10 @@ Pose raw_pose(const BodyState& state) {
   return {to_vec3(state.position), q.norm() > 0.0 ? q : Eigen::Quaterniond::Identity()};
 }
 
-// motion: nullopt for a body without drag and added mass.
+// motion: nullopt for a body without drag and added mass. solver: of the body.
 double energy_of(const RigidBody& rigid, const std::optional<HydrodynamicMotion>& motion,
-                 const RecordedState& recorded, const BodyWrench& wrench, const Water& water) {
+                 const RecordedState& recorded, const BodyWrench& wrench, const Solver& solver,
+                 const Water& water) {
   const Pose pose = raw_pose(recorded.state);
   DynamicsSpec spec;
   spec.position = pose.p_WB;
@@ -58,6 +59,9 @@ double energy_of(const RigidBody& rigid, const std::optional<HydrodynamicMotion>
   spec.angular_velocity = to_vec3(recorded.state.angular_velocity);
   const RigidBodyState state = initial_state(rigid, spec);
   const double added = motion ? motion->added_kinetic_energy_at_pose(state).value_or(kUnknown) : 0.0;
+  if (!water.layers.empty()) {
+    return mechanical_energy(rigid, state, solver, water).value_or(kUnknown) + added;
+  }
   return mechanical_energy(rigid, state, wrench, water) + added;
 }
 
@@ -237,7 +241,7 @@ std::shared_ptr<RowLoads> RunBuilder::add(const RecordedState& recorded) {
     row[kEnergy] = *recorded.energy;
   } else if (recorded.velocities && shown->rigid && wrench.status == BodyStatus::kOk) {
     if (condition != nullptr && condition != shown->condition) make_rigid(body, condition, *shown);
-    row[kEnergy] = energy_of(*shown->rigid, shown->motion, recorded, wrench, scene_.water());
+    row[kEnergy] = energy_of(*shown->rigid, shown->motion, recorded, wrench, body.solver, scene_.water());
   }
   row[kRoundTrip] = recorded.round_trip;
   const Attitude body_attitude = attitude(raw_pose(recorded.state), scene_.water(), shown->mesh_up);

@@ -93,6 +93,7 @@ class Sea:
         ramp: float = 0.0,
         waves: Union[Mapping[str, Any], Sequence[Mapping[str, Any]]] = ...,
         current: Mapping[str, Any] = ...,
+        layer: Sequence[Mapping[str, Any]] = ...,
     ) -> None: ...
     def elevation(self, x: ArrayLike, y: ArrayLike, t: ArrayLike, *, threads: int = 0) -> Union[Array, float]: ...
     def velocity(
