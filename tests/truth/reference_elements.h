@@ -66,7 +66,7 @@ inline double mean_positive_part(std::array<double, 3> u) {
 // most `negligible` [m] there.
 class WaveResolution {
  public:
-  WaveResolution(const ReferenceSea& sea, double negligible) {
+  WaveResolution(const ReferenceWaters& sea, double negligible) {
     const double first = 0.02 / std::max(sea.resolved_wave_number(0.0, 0.0), 1e-12);
     double depth = 0.0;
     for (int i = 0; i < 60; ++i) {

@@ -18,7 +18,7 @@ namespace {
 
 class Integrator {
  public:
-  Integrator(const TriangleMesh& surface_B, const Vec3& center_B, const ReferenceSea& sea,
+  Integrator(const TriangleMesh& surface_B, const Vec3& center_B, const ReferenceWaters& sea,
              const Vec3& reference_B, const ReferenceGoal& goal)
       : sea_(sea), goal_(goal), reference_(reference_B - center_B) {
     TriangleMesh about_c = surface_B;
@@ -371,7 +371,7 @@ class Integrator {
   static constexpr double kLongestEdge = 1.5;
   static constexpr double kShareOfElements = 0.9;
 
-  const ReferenceSea& sea_;
+  const ReferenceWaters& sea_;
   ReferenceGoal goal_;
   Vec3 reference_;
   std::vector<Vec3> normals_;
@@ -387,7 +387,7 @@ class Integrator {
 }  // namespace
 }  // namespace reference
 
-ReferenceLoad reference_load(const TriangleMesh& surface_B, const Vec3& center_B, const ReferenceSea& sea,
+ReferenceLoad reference_load(const TriangleMesh& surface_B, const Vec3& center_B, const ReferenceWaters& sea,
                              const Vec3& reference_B, const ReferenceGoal& goal) {
   return reference::Integrator(surface_B, center_B, sea, reference_B, goal).run();
 }

@@ -29,7 +29,7 @@ struct ReferenceGoal {
 };
 
 // surface_B: as validated, in B.
-ReferenceLoad reference_load(const TriangleMesh& surface_B, const Vec3& center_B, const ReferenceSea& sea,
+ReferenceLoad reference_load(const TriangleMesh& surface_B, const Vec3& center_B, const ReferenceWaters& sea,
                              const Vec3& reference_B, const ReferenceGoal& goal);
 
 }  // namespace buoyancy

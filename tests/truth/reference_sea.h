@@ -25,27 +25,41 @@ struct SeaPoints {
   void add(const Vec3& p);
 };
 
-class ReferenceSea {
+// What reference_load() asks of a sea about a body.
+class ReferenceWaters {
+ public:
+  virtual ~ReferenceWaters() = default;
+
+  virtual void set_heights(SeaPoints& points) const = 0;
+  virtual void set_pressures(SeaPoints& points) const = 0;
+  virtual std::size_t components() const = 0;
+  virtual const Vec3& up_B() const = 0;
+  virtual double error() const = 0;             // [m], on heights and pressures
+  virtual double curvature() const = 0;         // [1/m], how strongly the surface bends
+  virtual double third_derivative() const = 0;  // [1/m^2]
+  // [rad/m], the largest wave number of which something is left at a depth below the surface: that of which
+  // the components above add up to at most `negligible` [m]. 0: none matters.
+  virtual double resolved_wave_number(double depth, double negligible) const = 0;
+};
+
+class ReferenceSea final : public ReferenceWaters {
  public:
   ReferenceSea(const Sea& sea, std::int64_t utime, double lead_time, const Pose& pose, const Vec3& center_B);
 
-  void set_heights(SeaPoints& points) const;
-  void set_pressures(SeaPoints& points) const;
+  void set_heights(SeaPoints& points) const override;
+  void set_pressures(SeaPoints& points) const override;
 
-  std::size_t components() const { return amplitude_.size(); }
-  const Vec3& up_B() const { return up_B_; }
-  // [m], on heights and pressures: the rounding of phases, and of wave numbers, which the sea has in double.
-  double error() const { return error_; }
+  std::size_t components() const override { return amplitude_.size(); }
+  const Vec3& up_B() const override { return up_B_; }
+  // The rounding of phases, and of wave numbers, which the sea has in double.
+  double error() const override { return error_; }
   // [m], the sum of the amplitudes now: no crest is higher.
   double max_elevation() const { return max_elevation_; }
   double max_slope() const { return max_slope_; }  // sum of a k
-  // [1/m], [1/m^2]: how strongly the surface bends, 4 standard deviations or the sum over the components,
-  // whichever is less.
-  double curvature() const { return curvature_; }
-  double third_derivative() const { return third_derivative_; }
-  // [rad/m], the largest wave number of which something is left at a depth below the surface: that of which
-  // the components above add up to at most `negligible` [m]. 0: none matters.
-  double resolved_wave_number(double depth, double negligible) const;
+  // 4 standard deviations or the sum over the components, whichever is less.
+  double curvature() const override { return curvature_; }
+  double third_derivative() const override { return third_derivative_; }
+  double resolved_wave_number(double depth, double negligible) const override;
 
   // The components about c, in the order of falling wave number; internal to the SIMD code.
   struct View {

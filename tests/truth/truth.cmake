@@ -17,7 +17,8 @@ target_include_directories(buoyancy_oracle PUBLIC ${PROJECT_SOURCE_DIR})
 target_link_libraries(buoyancy_oracle PUBLIC buoyancy_hydrostatics Boost::headers ${GMP_LIBRARY} PRIVATE buoyancy_compile_options)
 
 add_library(buoyancy_wave_reference STATIC ${CMAKE_CURRENT_LIST_DIR}/reference_load.cpp
-                                           ${CMAKE_CURRENT_LIST_DIR}/reference_sea.cpp)
+                                           ${CMAKE_CURRENT_LIST_DIR}/reference_sea.cpp
+                                           ${CMAKE_CURRENT_LIST_DIR}/reference_spline.cpp)
 target_include_directories(buoyancy_wave_reference PUBLIC ${PROJECT_SOURCE_DIR})
 target_link_libraries(buoyancy_wave_reference PUBLIC buoyancy::wave_loads PRIVATE hwy::hwy buoyancy_compile_options)
 
