@@ -105,14 +105,22 @@ FlowAtBody flow_at_body(const WaterState& water, const Current& current, const V
   const WaterAtPoint point = water.waves->at(p_W);
   motion.velocity_W += point.velocity_W;
   motion.acceleration_W = point.acceleration_W;
-  // The acceleration of a component is at most g a k, and its velocity at most g a k over its frequency. The
-  // phases are exact to 1e-15 of a turn, and the position is rounded.
   const Sea& sea = water.waves->sea();
   const SeaExpansion& expansion = water.waves->sea().expansion();
+  const double rounding = 8.0 * kEpsilon * (p_W.lpNorm<1>() + std::abs(sea.water().level));  // of positions
+  if (!sea.surfaces().empty()) {
+    // The difference of two surfaces over the time between them; of one surface there is no velocity.
+    if (water.waves->surface().count < 2) return motion;
+    const auto between = static_cast<double>(sea.surfaces()[1].utime - sea.surfaces()[0].utime);
+    const auto [elevation, slope, curvature] = expansion.amplitude_sums;
+    motion.velocity_error = 2e6 * (0x1p-40 * elevation + slope * rounding) / between;
+    return motion;
+  }
+  // The acceleration of a component is at most g a k, and its velocity at most g a k over its frequency. The
+  // phases are exact to 1e-15 of a turn, and the position is rounded.
   const double steepness = expansion.amplitude_sums[1];
-  const double phase =
-      1e-14 + kEpsilon * static_cast<double>(sea.components().size()) +
-      8.0 * kEpsilon * (p_W.lpNorm<1>() + std::abs(sea.water().level)) * expansion.k_max * (1.0 + steepness);
+  const double phase = 1e-14 + kEpsilon * static_cast<double>(sea.components().size()) +
+                       rounding * expansion.k_max * (1.0 + steepness);
   motion.acceleration_error = sea.water().gravity * steepness * phase;
   motion.velocity_error = motion.acceleration_error / std::ranges::min(sea.prepared().angular_frequency);
   return motion;

@@ -6,13 +6,16 @@
 namespace buoyancy {
 
 template <typename Number>
-void DirectSea<Number>::prepare(const SeaSnapshot& snapshot, double x1, double x2,
+void DirectSea<Number>::prepare(const SeaSnapshot& snapshot, double center_x1, double center_x2,
                                 std::vector<double>& scratch) {
   constexpr double kPerTurn = 0.15915494309189535;     // 1 / (2 pi)
   constexpr double kPerDoubling = 1.4426950408889634;  // 1 / ln 2
   const PreparedComponents& waves = snapshot.sea().prepared();
   const double depth = snapshot.sea().depth();
   const bool deep = std::isinf(depth);
+  surface = snapshot.surface().count > 0 ? &snapshot.surface() : nullptr;
+  x1 = center_x1;
+  x2 = center_x2;
   snapshot.phases_at(x1, x2, scratch);
   per_depth = static_cast<Number>(deep ? 0.0 : 1.0 / depth);
   bed = deep ? std::numeric_limits<Number>::lowest() : static_cast<Number>(-depth);

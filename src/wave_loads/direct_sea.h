@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "waves/elevation_spline.h"
 #include "waves/sea_snapshot.h"
 
 namespace buoyancy {
@@ -30,13 +31,15 @@ struct DirectSea {
   };
   static constexpr std::size_t kMaxGroup = 64;  // so that the rounding errors of a sum do not add up
 
+  const ElevationBlend* surface = nullptr;  // of a sea on grids, which has no components
+  double x1 = 0.0, x2 = 0.0;                // [m], of the body's centre
   std::vector<Component> components;
   std::vector<Group> groups;
   Number per_depth = 0;  // [1/m], 1 / h; 0 in deep water
   Number bed = 0;        // [m], -h; the lowest number in deep water
 
-  // x1, x2: the body's centre [m]. scratch: phases.
-  void prepare(const SeaSnapshot& sea, double x1, double x2, std::vector<double>& scratch);
+  // center_x1, center_x2: the body's centre [m]. scratch: phases.
+  void prepare(const SeaSnapshot& sea, double center_x1, double center_x2, std::vector<double>& scratch);
 };
 
 }  // namespace buoyancy

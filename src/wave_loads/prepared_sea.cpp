@@ -28,6 +28,15 @@ constexpr double kRoundingMargin = 1.0 + 1e-12;
 
 PreparedSea::PreparedSea(Sea sea) : Sea(std::move(sea)), expansion_(*this) {
   assert(!is_still());
+  if (!surfaces().empty()) {
+    auto& [elevation, slope, curvature] = expansion_.amplitude_sums;
+    elevation = max_elevation();
+    for (const TimedElevation& surface : surfaces()) {
+      slope = std::max(slope, surface.spline->max_slope());
+      curvature = std::max(curvature, surface.spline->max_curvature());
+    }
+    return;
+  }
   const PreparedComponents& components = prepared();
   const std::vector<double>& k = components.wave_number;
   const double k_max = expansion_.k_max;

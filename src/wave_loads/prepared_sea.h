@@ -17,10 +17,12 @@ class PreparedSea : public Sea {
   PreparedSea(const PreparedSea&) = delete;
   PreparedSea& operator=(const PreparedSea&) = delete;
 
+  // Of a sea on grids only the bounds on elevation, slope and curvature, amplitude_sums, are of use.
   const SeaExpansion& expansion() const { return expansion_; }
 
   // Bound on the norm of the gradient of the wave pressure over rho g, at full amplitudes, at and below this
-  // height over the level: B_1 in docs/wave_mathematics.md. z: [m], <= 0. Complexity: O(1).
+  // height over the level: B_1 in docs/wave_mathematics.md. Not of a sea on grids. z: [m], <= 0. Complexity:
+  // O(1).
   double max_gradient(double z) const;
 
  private:

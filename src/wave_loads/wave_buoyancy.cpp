@@ -24,14 +24,25 @@ Water with_level(const Water& water, double level) {
   return {.up_W = water.up_W, .level = level, .density = water.density, .gravity = water.gravity};
 }
 
+// Returns whether there is no surface above or below a part of the mesh's box.
+bool leaves_grid(const HydrostaticMesh& mesh, const SeaAtTime& sea, const Pose& pose) {
+  return sea.surface().count > 0 && !sea.surface().holds(footprint_of(mesh, pose, sea.sea().axes()));
+}
+
 // Against the highest crest and the lowest trough: kDry and kSubmerged are certain.
 Immersion immersion_in_waves(const HydrostaticMesh& mesh, const SeaAtTime& sea, const Pose& pose) {
   const Water& water = sea.sea().water();
-  const double elevation = sea.max_elevation();
-  if (quick_immersion(mesh, pose, with_level(water, water.level + elevation)) == Immersion::kDry) {
+  double crest = sea.max_elevation();
+  double trough = -crest;
+  if (sea.surface().count > 0) {
+    const ElevationBounds near = sea.surface().bounds_over(footprint_of(mesh, pose, sea.sea().axes()));
+    crest = static_cast<double>(near.high);
+    trough = static_cast<double>(near.low);
+  }
+  if (quick_immersion(mesh, pose, with_level(water, water.level + crest)) == Immersion::kDry) {
     return Immersion::kDry;
   }
-  if (quick_immersion(mesh, pose, with_level(water, water.level - elevation)) == Immersion::kSubmerged) {
+  if (quick_immersion(mesh, pose, with_level(water, water.level + trough)) == Immersion::kSubmerged) {
     return Immersion::kSubmerged;
   }
   return Immersion::kPiercing;
@@ -198,6 +209,10 @@ WaveBuoyancyResult buoyancy_in_waves(const Solver& solver, const WaveMesh& wave_
   const Water& water = sea.sea().water();
   WaveBuoyancyResult outcome;
   BuoyancyResult& result = outcome.result;
+  if (leaves_grid(mesh, sea, pose)) {
+    result = failed_result(BuoyancyStatus::kOutOfRange, Immersion::kPiercing);
+    return outcome;
+  }
   result.immersion = immersion_in_waves(mesh, sea, pose);
   if (result.immersion == Immersion::kDry) return outcome;
   if (!(pose.p_WB.lpNorm<1>() + mesh.center_B.lpNorm<1>() <= kFarthest)) {
@@ -249,6 +264,7 @@ bool try_buoyancy_in_waves_from_bounds(const Solver& solver, const FullySubmerge
                                        const SeaAtTime& sea, const Pose& pose, const Vec3& reference_B,
                                        WaveBuoyancyResult& outcome) {
   const HydrostaticMesh& mesh = solver.mesh();
+  if (leaves_grid(mesh, sea, pose)) return false;
   const Immersion where = immersion_in_waves(mesh, sea, pose);
   if (where == Immersion::kPiercing) return false;
   if (where == Immersion::kDry) {

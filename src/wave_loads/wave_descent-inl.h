@@ -31,10 +31,11 @@ HWY_BEFORE_NAMESPACE();
 namespace buoyancy {
 namespace HWY_NAMESPACE {
 
-template <typename Number>
+// Round: what the patches of a round need of the sea, such as PatchesInCells.
+template <typename Number, typename Round>
 struct DescentWorkspace {
   QueryPatches patches;
-  RoundPatches<Number> round;
+  Round round;
   LoadSum<Number> sum;
   std::vector<Number> roots;  // of the results' expected errors
   ModelCache<Number> cache;
@@ -44,12 +45,12 @@ struct DescentWorkspace {
   std::vector<std::uint32_t> refined;  // results
 };
 
-template <typename Number>
+template <typename Number, typename Round>
 class Descent {
  public:
   using V = VectorOf<Number>;
 
-  Descent(const WaveQuery& query, DescentWorkspace<Number>& work)
+  Descent(const WaveQuery& query, DescentWorkspace<Number, Round>& work)
       : query_(query), work_(work), patch_(patch_query_of<Number>(query)) {
     work_.patches.start(*query.tree);
     work_.round.start(query_, work_.patches, patch_);
@@ -64,14 +65,14 @@ class Descent {
     evaluate_round();
     constexpr int kMaxRounds = 24;
     for (int round = 0; round < kMaxRounds && work_.sum.total() > query_.budget; ++round) {
-      if (patches_ > kMaxPatches || cells().full() || !refine()) break;
+      if (patches_ > kMaxPatches || work_.round.full() || !refine()) break;
       evaluate_round();
     }
     WaveLoad load = work_.sum.load();
     load.capped = work_.sum.total() > query_.budget;
     load.too_steep = too_steep_;
     load.patches = static_cast<std::int32_t>(patches_);
-    load.cells = static_cast<std::int32_t>(cells().surface_count() + cells().volume_count());
+    load.cells = static_cast<std::int32_t>(work_.round.cell_count());
     return load;
   }
 
@@ -80,8 +81,6 @@ class Descent {
   static constexpr std::size_t kMaxFirst = 1'000;
   // Children inherit a model that leaves out at most this share of the limit: chosen for the least time.
   static constexpr double kInheritedShare = 0.3;
-
-  const SeaCells<Number>& cells() const { return work_.round.cells(); }
 
   // Whether none of a block's patches is a leaf.
   static bool all_inner(const PatchBlock& block) {
@@ -116,11 +115,7 @@ class Descent {
     const GroupTag<float> d;
     using F = hn::Vec<GroupTag<float>>;
     const auto number = [&](double x) HWY_ATTR { return hn::Set(d, static_cast<float>(x)); };
-    const SeaExpansion& sea = *query_.expansion;
-    const double factor = query_.sea->amplitude_factor();
-    const double k = sea.k_max;
     // Chosen for the least time on meshes of 5,000 triangles and more.
-    constexpr double kThird = 4.0 / 6.0;
     constexpr double kCrossing = 0.01;
     constexpr double kShare = 0.1;
     const F one = number(1.0);
@@ -131,10 +126,9 @@ class Descent {
           load(block.center[0]), number(query_.up_B.x()),
           hn::MulAdd(load(block.center[1]), number(query_.up_B.y()),
                      hn::MulAdd(load(block.center[2]), number(query_.up_B.z()), number(query_.zeta))));
-      const F depth =
-          number(query_.hydrostatic ? 0.0 : k * sea.typical_decay) * hn::Max(hn::Neg(zeta), hn::Zero(d));
+      const F depth = number(query_.usual_decay) * hn::Max(hn::Neg(zeta), hn::Zero(d));
       const F decay = hn::MulAdd(depth, hn::MulAdd(depth, number(0.5), one), one);  // about an exponential
-      const F wet = number(kThird * factor * sea.typical_third * k * k * k) * load(block.mu3) / decay;
+      const F wet = number(query_.usual_wet_error) * load(block.mu3) / decay;
       const F crossing = number(kCrossing) * load(block.area) * load(block.radius);
       const F reach = load(block.radius) + number(query_.usual_elevation);
       const F error = wet + hn::IfThenElseZero(hn::Gt(zeta, hn::Neg(reach)), crossing);
@@ -253,14 +247,10 @@ class Descent {
   // Evaluates the groups of the round and appends their results.
   void evaluate_round() {
     work_.round.evaluate_surface();
-    if (query_.hydrostatic) {
-      work_.round.for_each_batch_of_surface(
-          [this](const Batch<Number>& batch, std::size_t cell) { evaluate_batch(batch, cell, 0); });
-    } else {
-      work_.round.for_each_batch_of_volume([this](const Batch<Number>& batch, std::size_t cell) {
-        evaluate_batch(batch, cells().column_of_volume(cell), cell);
-      });
-    }
+    work_.round.for_each_batch(
+        [this](const Batch<Number>& batch, std::size_t surface_cell, std::size_t volume_cell) {
+          evaluate_batch(batch, surface_cell, volume_cell);
+        });
     work_.clips.finish(work_.patches, patch_, work_.sum);
     patches_ += work_.inherited.finish(work_.patches, patch_, work_.sum);
     work_.round.clear();
@@ -268,33 +258,7 @@ class Descent {
 
   HWY_NOINLINE void evaluate_batch(const Batch<Number>& batch, std::size_t surface_cell,
                                    std::size_t volume_cell) {
-    const V zero = set<Number>(0.0);
-    const auto read = [&](const Batch<Number>& b, auto row) HWY_ATTR { return work_.round.read(b, row); };
-    PatchField<Number> field;
-    field.place = {read(batch, &GroupPlace<Number>::x1), read(batch, &GroupPlace<Number>::x2),
-                   read(batch, &GroupPlace<Number>::zeta)};
-    field.surface = {read(batch, &GroupPlace<Number>::eta),      read(batch, &GroupPlace<Number>::eta_1),
-                     read(batch, &GroupPlace<Number>::eta_2),    read(batch, &GroupPlace<Number>::eta_11),
-                     read(batch, &GroupPlace<Number>::eta_12),   read(batch, &GroupPlace<Number>::eta_22),
-                     read(batch, &GroupPlace<Number>::eta_third)};
-    const CellCenter& above = cells().surface_center(surface_cell);
-    const V x1 = field.place.x1 - set<Number>(above.x1);
-    const V x2 = field.place.x2 - set<Number>(above.x2);
-    const V horizontal = hn::MulAdd(x1, x1, x2 * x2);
-    field.surface_bounds = &cells().surface(surface_cell).bounds;
-    field.surface_reach = hn::Sqrt(horizontal);
-    if (query_.hydrostatic) {
-      field.f = {zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
-      field.volume_bounds = field.surface_bounds;
-      field.volume_reach = zero;
-    } else {
-      const VolumeCell<Number>& cell = cells().volume(volume_cell);
-      const V z = stretched<Number>(patch_, field.place, field.surface.eta) -
-                  set<Number>(cells().volume_center(volume_cell).z);
-      field.f = evaluate<Number>(cell, x1, x2, z);
-      field.volume_bounds = &cell.bounds;
-      field.volume_reach = hn::Sqrt(hn::MulAdd(z, z, horizontal));
-    }
+    typename Round::Field field = work_.round.field_of(batch, surface_cell, volume_cell);
     const auto in_use = hn::FirstN(LanesOf<Number>(), batch.count * kGroup<Number>);
     const GroupsOfVector<Number> groups = work_.round.groups_of(batch);
     const PatchMoments<Number> moments = read_moments<Number>(work_.patches, groups);
@@ -312,15 +276,16 @@ class Descent {
   }
 
   const WaveQuery& query_;
-  DescentWorkspace<Number>& work_;
+  DescentWorkspace<Number, Round>& work_;
   PatchQuery<Number> patch_;
   bool too_steep_ = false;
   std::size_t patches_ = 0;
 };
 
-template <typename Number>
+template <typename Number, template <typename> typename Round>
 WaveLoad run_descent(const WaveQuery& query) {
-  return Descent<Number>(query, thread_workspace<DescentWorkspace<Number>>()).run();
+  auto& workspace = thread_workspace<DescentWorkspace<Number, Round<Number>>>();
+  return Descent<Number, Round<Number>>(query, workspace).run();
 }
 
 }  // namespace HWY_NAMESPACE

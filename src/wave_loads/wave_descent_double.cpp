@@ -13,7 +13,7 @@ namespace buoyancy {
 namespace HWY_NAMESPACE {
 
 WaveLoad descend_double(const WaveQuery& query) {
-  return run_descent<double>(query);
+  return run_descent<double, PatchesInCells>(query);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -13,7 +13,7 @@ namespace buoyancy {
 namespace HWY_NAMESPACE {
 
 WaveLoad descend_single(const WaveQuery& query) {
-  return run_descent<float>(query);
+  return run_descent<float, PatchesInCells>(query);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -19,6 +19,7 @@
 #include "hydrostatics/hydrostatic_mesh.h"
 #include "wave_loads/patch_tree.h"
 #include "wave_loads/sea_expansion.h"
+#include "waves/elevation_spline.h"
 #include "waves/sea_snapshot.h"
 
 namespace buoyancy {
@@ -44,6 +45,10 @@ struct WaveBody {
   double tolerance = 1e-3;                // relative to the volume of the mesh; above 0
 };
 
+// The box of the mesh at a pose, from above, somewhat wider than the rounding of positions makes it.
+HorizontalBox footprint_of(const HydrostaticMesh& mesh, const Pose& pose, const HorizontalAxes& axes);
+
+// expansion: of the sea; of a sea on grids, any. Where a grid is not periodic, it holds the body's footprint.
 // reference_B: [m], about B's origin.
 WaveLoad wave_load(const WaveBody& body, const SeaExpansion& expansion, const SeaSnapshot& sea,
                    const Pose& pose, const Vec3& reference_B);

@@ -38,8 +38,8 @@ struct PatchQuery {
   bool hydrostatic = false;
   // Whether the body is wet everywhere: its weight of water is added apart, and patches integrate f alone.
   bool submerged = false;
-  double amplitude = 0.0;          // sum of a k_max
-  double slope = 0.0;              // sum of a k
+  double amplitude = 0.0;          // A_0 k_max
+  double slope = 0.0;              // sum of a k, or what stands for it
   double unit_roundoff = 0.0;      // of Number
   double integral_rounding = 0.0;  // of a patch's integrals, relative
   double displacement = 0.0;       // of the surface, times k_max
@@ -59,16 +59,15 @@ PatchQuery<Number> patch_query_of(const WaveQuery& query) {
   patch.e2_B = narrow(query.e2_B);
   patch.up_B = narrow(query.up_B);
   patch.reference = narrow(query.reference);
-  patch.k_max = query.expansion->k_max;
+  patch.k_max = query.k_max;
   patch.zeta = query.zeta;
   patch.per_depth = query.deep_water() ? 0.0 : 1.0 / (patch.k_max * query.depth);
   constexpr double kLowest = 0.25 * std::numeric_limits<Number>::max();
   patch.bed = -std::min(patch.k_max * query.depth, kLowest);
   patch.hydrostatic = query.hydrostatic;
   patch.submerged = query.submerged;
-  const double factor = query.sea->amplitude_factor();
-  patch.amplitude = factor * query.expansion->amplitude_sums[0] * patch.k_max;
-  patch.slope = factor * query.expansion->amplitude_sums[1];
+  patch.amplitude = query.max_elevation * patch.k_max;
+  patch.slope = query.max_slope;
   patch.unit_roundoff = 0.5 * std::numeric_limits<Number>::epsilon();
   patch.integral_rounding = 16.0 * patch.unit_roundoff + std::numeric_limits<float>::epsilon();
   patch.displacement = query.displacement * patch.k_max;
@@ -122,36 +121,44 @@ struct SurfaceRange {
   ReachBounds<Number> above;    // of the expansion of eta over the patch
 };
 
-// r: radius over 1 / k_max.
+// Sets L_1 and L_2, and the range of s but for its error, once L_3 is set. r: radius over 1 / k_max.
+template <typename Number>
+HWY_INLINE void set_variation(const VectorOf<Number>& zeta, const VectorOf<Number>& r,
+                              const SurfaceValues<Number>& surface, SurfaceRange<Number>& range) {
+  using V = VectorOf<Number>;
+  const V zero = set<Number>(0.0);
+  const V half = set<Number>(0.5);
+  range.s = zeta - surface.eta;
+  const V mean = half * (surface.eta_11 + surface.eta_22);
+  const V difference = half * (surface.eta_11 - surface.eta_22);
+  const V deviator = hn::Sqrt(hn::MulAdd(difference, difference, surface.eta_12 * surface.eta_12));
+  range.L2_at_point = hn::Abs(mean) + deviator;
+  range.L2 = hn::MulAdd(r, range.L3, range.L2_at_point);
+  const V slope_squared = hn::MulAdd(surface.eta_1, surface.eta_1, surface.eta_2 * surface.eta_2);
+  range.L1 = hn::MulAdd(r, range.L2, hn::Sqrt(slope_squared));
+  const V r_squared_half = half * r * r;
+  const V variation = hn::MulAdd(r, hn::Sqrt(set<Number>(1.0) + slope_squared),
+                                 r_squared_half * r * range.L3 * set<Number>(1.0 / 3.0));
+  // -D^2 eta has the eigenvalues -mean -+ deviator.
+  range.low = range.s - variation + r_squared_half * hn::Min(zero, hn::Neg(mean) - deviator);
+  range.high = range.s + variation + r_squared_half * hn::Max(zero, deviator - mean);
+}
+
 template <typename Number>
 HWY_INLINE SurfaceRange<Number> range_of(const VectorOf<Number>& zeta, const VectorOf<Number>& r,
                                          const SurfaceValues<Number>& surface,
                                          const CellBounds<Number>& bounds, const VectorOf<Number>& reach,
                                          const VectorOf<Number>& rounding) {
-  using V = VectorOf<Number>;
-  const V zero = set<Number>(0.0);
-  const V half = set<Number>(0.5);
   SurfaceRange<Number> range;
-  range.s = zeta - surface.eta;
   range.above = bounds_at<Number>(bounds, reach + r);
-  const V mean = half * (surface.eta_11 + surface.eta_22);
-  const V difference = half * (surface.eta_11 - surface.eta_22);
-  const V deviator = hn::Sqrt(hn::MulAdd(difference, difference, surface.eta_12 * surface.eta_12));
   range.L3 = third_within<Number>(surface.third, range.above, r, rounding);
   range.L4 = range.above.fourth;
   range.third_rest = hn::MulAdd(rounding, range.above.third, third_rest_at<Number>(bounds, reach));
-  range.L2_at_point = hn::Abs(mean) + deviator;
-  range.L2 = hn::MulAdd(r, range.L3, range.L2_at_point);
-  const V slope_squared = hn::MulAdd(surface.eta_1, surface.eta_1, surface.eta_2 * surface.eta_2);
-  range.L1 = hn::MulAdd(r, range.L2, hn::Sqrt(slope_squared));
+  set_variation<Number>(zeta, r, surface, range);
   range.rounded = rounding * range.above.sum;
   range.epsilon = hn::MulAdd(rounding, hn::Abs(zeta), range.rounded + range.above.truncation);
-  const V r_squared_half = half * r * r;
-  const V variation = hn::MulAdd(r, hn::Sqrt(set<Number>(1.0) + slope_squared),
-                                 r_squared_half * r * range.L3 * set<Number>(1.0 / 3.0));
-  // -D^2 eta has the eigenvalues -mean -+ deviator.
-  range.low = range.s - variation + r_squared_half * hn::Min(zero, hn::Neg(mean) - deviator) - range.epsilon;
-  range.high = range.s + variation + r_squared_half * hn::Max(zero, deviator - mean) + range.epsilon;
+  range.low = range.low - range.epsilon;
+  range.high = range.high + range.epsilon;
   return range;
 }
 
@@ -261,13 +268,18 @@ HWY_INLINE Symmetric<Number> level_hessian_in_body_axes(const PatchQuery<Number>
           entry(e1.x, e2.x, first.z, second.z), entry(e1.y, e2.y, first.z, second.z)};
 }
 
-// The sea on patches: the expansions at their centroids, and the bounds of the cells that these come from.
+// Patches, and the surface of the sea above or below their centroids.
 template <typename Number>
-struct PatchField {
+struct SurfaceField {
   Place<Number> place;
   VectorOf<Number> r;       // radius over 1 / k_max
   VectorOf<Number> spread;  // root mean square of the distance from the centroid, over the radius
   SurfaceValues<Number> surface;
+};
+
+// With the expansions of the sea, and the bounds of the cells that these come from.
+template <typename Number>
+struct PatchField : SurfaceField<Number> {
   const CellBounds<Number>* surface_bounds;
   VectorOf<Number> surface_reach;  // of the place from its cell's centre, over 1 / k_max
   // Not used where the pressure is hydrostatic.
@@ -297,7 +309,7 @@ HWY_INLINE PatchSurface<Number> surface_of(const PatchQuery<Number>& query, cons
 
 // Sets the model of s and its bounds ("Volume and its centre").
 template <typename Number>
-HWY_INLINE void set_height_model(const PatchQuery<Number>& query, const PatchField<Number>& field,
+HWY_INLINE void set_height_model(const PatchQuery<Number>& query, const SurfaceField<Number>& field,
                                  const SurfaceRange<Number>& range, PatchModel<Number>& model) {
   using V = VectorOf<Number>;
   const V& r = field.r;
@@ -343,7 +355,7 @@ struct PressureExpansion {
 // phi = -zeta + eta
 template <typename Number>
 HWY_INLINE PressureExpansion<Number> hydrostatic_pressure(const PatchQuery<Number>& query,
-                                                          const PatchField<Number>& field,
+                                                          const SurfaceField<Number>& field,
                                                           const PatchSurface<Number>& surface) {
   using V = VectorOf<Number>;
   const V zero = set<Number>(0.0);
@@ -621,7 +633,7 @@ HWY_INLINE PressureExpansion<Number> stretched_pressure(const PatchQuery<Number>
 // Sets the model of the pressure to the one of the lemmas that has the least error: T_2 where Lemma A or B
 // hold, the tangent plane of Lemma C, or the water at rest of Lemma D.
 template <typename Number>
-HWY_INLINE void choose_model(const PatchQuery<Number>& query, const PatchField<Number>& field,
+HWY_INLINE void choose_model(const PatchQuery<Number>& query, const SurfaceField<Number>& field,
                              const PatchSurface<Number>& surface, const PressureExpansion<Number>& p,
                              PatchModel<Number>& model) {
   using V = VectorOf<Number>;

@@ -40,25 +40,33 @@ struct CellGrid {
 
 struct WaveQuery {
   const PatchTree* tree = nullptr;
-  const SeaExpansion* expansion = nullptr;
+  const SeaExpansion* expansion = nullptr;  // of the components
   const SeaSnapshot* sea = nullptr;
+  double k_max = 1.0;  // [rad/m]: lengths in the sea are in units of its inverse
+  // [m], what counts as the level: added to that of the water at rest.
+  double mean_elevation = 0.0;
+  double max_elevation = 0.0;  // [m], A_0: no crest is higher and no trough deeper
+  double max_slope = 0.0;      // bound on the slope of the surface
   Vec3 e1_B = Vec3::UnitX(), e2_B = Vec3::UnitY(), up_B = Vec3::UnitZ();
   Vec3 reference = Vec3::Zero();                           // [m], B axes, from c
   double x1 = 0.0, x2 = 0.0;                               // [m], of c, along the horizontal axes
-  double zeta = 0.0;                                       // [m], height of c over the level
+  double zeta = 0.0;                                       // [m], height of c over what counts as the level
   double depth = std::numeric_limits<double>::infinity();  // [m]
   bool hydrostatic = false;
   bool submerged = false;
   double usual_elevation = 0.0;  // [m], twice the root mean square, which waves seldom exceed
-  double displacement = 0.0;     // [m], of the tree's surface from the body's
-  double max_lever = 1.0;        // [m], L_r
-  double budget = 0.0;           // [m^3]
+  // About the error of a wet patch over its mu3 [1/m^2], and the rate at which it falls with the depth [1/m].
+  double usual_wet_error = 0.0, usual_decay = 0.0;
+  double displacement = 0.0;  // [m], of the tree's surface from the body's
+  double max_lever = 1.0;     // [m], L_r
+  double budget = 0.0;        // [m^3]
   CellGrid grid;
 
   bool deep_water() const { return std::isinf(depth); }
   // Of the caps that hold for up to kCappedComponents.
   std::size_t cap_on(std::size_t most) const {
-    return most * kCappedComponents / std::max(kCappedComponents, expansion->filled_components);
+    const std::size_t components = expansion == nullptr ? 0 : expansion->filled_components;
+    return most * kCappedComponents / std::max(kCappedComponents, components);
   }
 };
 
@@ -66,5 +74,8 @@ struct WaveQuery {
 // each, so that they compile at the same time.
 WaveLoad descend_in_single_precision(const WaveQuery& query);
 WaveLoad descend_in_double_precision(const WaveQuery& query);
+// The same in a sea on grids.
+WaveLoad descend_on_spline_in_single_precision(const WaveQuery& query);
+WaveLoad descend_on_spline_in_double_precision(const WaveQuery& query);
 
 }  // namespace buoyancy

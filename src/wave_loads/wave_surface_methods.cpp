@@ -161,6 +161,14 @@ template <typename Number>
 HWY_NOINLINE void evaluate_sea(const DirectSea<Number>& sea, std::size_t count, SeaPoints<Number>& points,
                                GroupSum<Number>* group_sums) {
   using Group = typename DirectSea<Number>::Group;
+  if (sea.surface != nullptr) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const ElevationDerivatives there = sea.surface->at(sea.x1 + static_cast<double>(points.x1[i]),
+                                                         sea.x2 + static_cast<double>(points.x2[i]));
+      points.eta[i] = static_cast<Number>(there.eta);
+    }
+    return;
+  }
   constexpr std::size_t kTogether = DirectSea<Number>::kMaxGroup;  // groups, as with components
   const LanesOf<Number> d;
   const auto zero = hn::Zero(d);
@@ -475,7 +483,7 @@ WaveLoad surface_load(SurfaceMethod method, Precision precision, const Hydrostat
   const double x2 = sea.axes().e2_W.dot(c_W);
   // The error of float32 sums is a fraction of the waves' height over the whole surface.
   constexpr double kHeightPerEdge = 10.0;
-  const bool single = precision == Precision::kAsNeeded &&
+  const bool single = precision == Precision::kAsNeeded && snapshot.surface().count == 0 &&
                       snapshot.amplitude_factor() * sea.significant_wave_height() * mesh.area <
                           kHeightPerEdge * std::abs(mesh.volume);
   thread_local std::vector<double> phases;

@@ -6,6 +6,8 @@
 // interpolant is zero, and integrates the pressure over the wet pieces with three points, exact for quadratic
 // functions. A point above the surface has no pressure. What the load is: wave_load.h.
 //
+// Of a sea on grids the spline is evaluated at the points, in double.
+//
 // Phases are reduced in double-double at the body's centre. The sums over components are in float32 where
 // that costs less than about 1e-6 of the displaced volume, else in double. Complexity: O(triangles x
 // components). No heap after a thread's first query of a mesh and a sea of their size.

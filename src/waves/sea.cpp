@@ -1,6 +1,7 @@
 #include "waves/sea.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -196,6 +197,18 @@ Expected<Sea> Sea::make(const SeaDescription& description, const Water& water) {
   return sea;
 }
 
+Sea Sea::of_surfaces(std::vector<TimedElevation> surfaces, const Water& water) {
+  assert(surfaces.size() == 1 || (surfaces.size() == 2 && surfaces[0].utime < surfaces[1].utime));
+  Sea sea;
+  sea.water_ = water;
+  sea.axes_ = horizontal_axes(water.up_W);
+  sea.depth_ = std::numeric_limits<double>::infinity();
+  sea.pressure_ = WavePressure::kHydrostatic;
+  sea.time_origin_ = surfaces[0].utime;
+  sea.surfaces_ = std::move(surfaces);
+  return sea;
+}
+
 double Sea::significant_wave_height() const {
   double variance = 0.0;
   for (const double amplitude : prepared_.amplitude) variance += 0.5 * amplitude * amplitude;
@@ -205,6 +218,10 @@ double Sea::significant_wave_height() const {
 double Sea::max_elevation() const {
   double sum = 0.0;
   for (const double amplitude : prepared_.amplitude) sum += amplitude;
+  for (const TimedElevation& surface : surfaces_) {
+    const ElevationBounds bounds = surface.spline->bounds();
+    sum = std::max({sum, -static_cast<double>(bounds.low), static_cast<double>(bounds.high)});
+  }
   return sum;
 }
 

@@ -9,15 +9,18 @@
 //                                                        stretching z' = h s / (h + eta), h the depth
 //   p/(rho g) = -s                                       where the pressure is `hydrostatic`
 // In deep water z' = s and E = exp(k z'). Below the bed, and where a trough uncovers it, z' = -h, so that the
-// waves are those at the bed. See docs/waves.md.
+// waves are those at the bed. See docs/waves.md. A sea that is known on a grid has no components; its
+// elevation is a spline.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/error.h"
 #include "base/vec3.h"
 #include "base/water.h"
+#include "waves/elevation_spline.h"
 #include "waves/sea_description.h"
 
 namespace buoyancy {
@@ -47,11 +50,21 @@ struct PreparedComponents {
   std::size_t size() const { return amplitude.size(); }
 };
 
+// A surface on a grid, and when the water has it.
+struct TimedElevation {
+  std::int64_t utime = 0;  // [us]
+  std::shared_ptr<const ElevationSpline> spline;
+};
+
 class Sea {
  public:
   // Errors name the number at fault: not finite, out of its range, too many components, waves without
   // gravity, waves higher than the water is deep.
   static Expected<Sea> make(const SeaDescription& description, const Water& water);
+  // A sea of deep water whose surface is known on grids instead of by components, without a current: one
+  // surface at all times, or the second one at a later utime, with elevations linear in time from one to the
+  // other and at rest before and after. Its pressure is hydrostatic.
+  static Sea of_surfaces(std::vector<TimedElevation> surfaces, const Water& water);
 
   const Water& water() const { return water_; }
   const HorizontalAxes& axes() const { return axes_; }
@@ -64,11 +77,13 @@ class Sea {
   // The described components, system after system. As one system of components they describe the same sea.
   const WaveComponents& components() const { return components_; }
   const PreparedComponents& prepared() const { return prepared_; }
-  bool is_still() const { return prepared_.size() == 0; }  // no amplitude is above 0
+  // None, or one or two: see of_surfaces().
+  const std::vector<TimedElevation>& surfaces() const { return surfaces_; }
+  bool is_still() const { return prepared_.size() == 0 && surfaces_.empty(); }  // no amplitude is above 0
 
-  double significant_wave_height() const;  // [m], 4 sqrt(sum a^2 / 2)
-  double max_elevation() const;            // [m], sum a: no crest is higher, no trough deeper
-  double max_wave_number() const;          // [rad/m]; 0 in still water
+  double significant_wave_height() const;  // [m], 4 sqrt(sum a^2 / 2); of the components alone
+  double max_elevation() const;    // [m], sum a, or that of the grids: no crest is higher, no trough deeper
+  double max_wave_number() const;  // [rad/m]; 0 in still water
 
   // How steep the sea gets: 4 standard deviations of the vertical derivative of its wave pressure at the
   // surface, over rho g, which are 4 sqrt(sum (a k)^2 / 2), or its limit sum a k where that is less. From 1
@@ -92,6 +107,7 @@ class Sea {
   Vec3 current_W_ = Vec3::Zero();
   WaveComponents components_;
   PreparedComponents prepared_;
+  std::vector<TimedElevation> surfaces_;
 };
 
 }  // namespace buoyancy

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/double_double.h"
 
@@ -25,6 +26,11 @@ DoubleDouble exactly(std::int64_t whole) {
                  static_cast<double>(whole - high * kHalf));
 }
 
+double seconds_between(const TimedElevation& earlier, const TimedElevation& later) {
+  const DoubleDouble microseconds = exactly(later.utime) - exactly(earlier.utime);
+  return 1e-6 * microseconds.hi;
+}
+
 }  // namespace
 
 SeaSnapshot::SeaSnapshot(const Sea& sea) : SeaSnapshot(sea, sea.time_origin()) {}
@@ -43,6 +49,17 @@ void SeaSnapshot::set_time(std::int64_t utime, double lead_time) {
     const DoubleDouble frequency{components.apparent_frequency[i], components.apparent_frequency_rest[i]};
     phases_[i] = reduced(DoubleDouble{components.phase[i], 0.0} - t * frequency);
   }
+  if (!sea_->surfaces().empty()) set_surface(t.hi);
+}
+
+// t: [s], from the time of the first surface.
+void SeaSnapshot::set_surface(double t) {
+  const std::vector<TimedElevation>& surfaces = sea_->surfaces();
+  const double share =
+      surfaces.size() == 1 ? 0.0 : std::clamp(t / seconds_between(surfaces[0], surfaces[1]), 0.0, 1.0);
+  surface_.count = 0;
+  if (share < 1.0) surface_.parts[surface_.count++] = {surfaces[0].spline.get(), 1.0 - share};
+  if (share > 0.0) surface_.parts[surface_.count++] = {surfaces[1].spline.get(), share};
 }
 
 double SeaSnapshot::phase_at(std::size_t i, double x1, double x2) const {
@@ -58,6 +75,10 @@ void SeaSnapshot::phases_at(double x1, double x2, std::vector<double>& out) cons
 }
 
 double SeaSnapshot::elevation(double x1, double x2) const {
+  if (surface_.count > 0) {
+    const bool is_known = surface_.holds({{x1, x2}, {x1, x2}});
+    return is_known ? surface_.at(x1, x2).eta : std::numeric_limits<double>::quiet_NaN();
+  }
   const PreparedComponents& components = sea_->prepared();
   double sum = 0.0;
   for (std::size_t i = 0; i < components.size(); ++i) {
@@ -78,6 +99,11 @@ WaterAtPoint SeaSnapshot::at(const Vec3& p_W) const {
   WaterAtPoint point;
   point.elevation = elevation(x1, x2);
   point.height = zeta - point.elevation;
+  if (surface_.count == 2) {
+    const std::vector<TimedElevation>& surfaces = sea_->surfaces();
+    const double rise = surfaces[1].spline->at(x1, x2).eta - surfaces[0].spline->at(x1, x2).eta;
+    point.velocity_W = rise / seconds_between(surfaces[0], surfaces[1]) * water.up_W;
+  }
   const double s = std::min(point.height, 0.0);
   const double column = h + point.elevation;
   const double stretched = std::isinf(h) ? s : column > 0.0 ? std::max(h * s / column, -h) : -h;

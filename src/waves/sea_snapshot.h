@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/vec3.h"
+#include "waves/elevation_spline.h"
 #include "waves/sea.h"
 
 namespace buoyancy {
@@ -37,20 +38,25 @@ class SeaSnapshot {
   double amplitude_factor() const { return amplitude_factor_; }  // Sea::amplitude_factor() now
   // [rad], one per component of Sea::prepared(), in [-pi, pi]: the phase at X = 0.
   const std::vector<double>& phases() const { return phases_; }
+  // Of a sea on grids, otherwise without parts.
+  const ElevationBlend& surface() const { return surface_; }
 
   // [m], over the level. x1, x2: [m], along the horizontal axes from the world's origin. Phases are exact to
-  // 1e-15 of a turn out to 1e9 wavelengths.
+  // 1e-15 of a turn out to 1e9 wavelengths. Not a number where a sea on grids has no surface.
   double elevation(double x1, double x2) const;
+  // Of a sea on grids, the velocity is that of the surface, upwards, and the acceleration 0.
   WaterAtPoint at(const Vec3& p_W) const;
   // Sets out[i] to the phase of component i at this place [rad], in [-pi, pi].
   void phases_at(double x1, double x2, std::vector<double>& out) const;
 
  private:
   double phase_at(std::size_t component, double x1, double x2) const;  // [rad]
+  void set_surface(double t);
 
   const Sea* sea_;
   double amplitude_factor_ = 1.0;
   std::vector<double> phases_;
+  ElevationBlend surface_;
 };
 
 }  // namespace buoyancy

@@ -221,7 +221,8 @@ double ReferenceSplineSea::third_derivative() const {
 
 double ReferenceSplineSea::resolved_wave_number(double /*depth*/, double /*negligible*/) const {
   double most = 0.0;
-  for (const Part& part : parts_) most = std::max(most, 3.0 / part.spline->min_spacing());
+  // Elements of a cell's size resolve the spline.
+  for (const Part& part : parts_) most = std::max(most, 1.5 / part.spline->min_spacing());
   return most;
 }
 

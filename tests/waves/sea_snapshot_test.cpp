@@ -1,9 +1,11 @@
 #include "waves/sea_snapshot.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <utility>
@@ -12,6 +14,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/waves/random_grid.h"
 #include "waves/dispersion.h"
 
 namespace buoyancy {
@@ -264,6 +267,59 @@ TEST(SeaSnapshot, TurnsWithUp) {
   EXPECT_NEAR(found.velocity_W.x(), expected.velocity_W.z(), 1e-12);
   EXPECT_NEAR(found.velocity_W.y(), expected.velocity_W.x(), 1e-12);
   EXPECT_NEAR(found.velocity_W.z(), expected.velocity_W.y(), 1e-12);
+}
+
+// The water's surface at two times [us] is that of these functions.
+Sea sea_of_surfaces(std::int64_t first, std::int64_t second, const Water& water = {}) {
+  const auto surface = [](std::int64_t utime, const std::function<double(double, double)>& elevation) {
+    auto spline = std::make_shared<ElevationSpline>();
+    EXPECT_TRUE(spline->set(sampled(20, 20, {0.0, 0.0}, {1.0, 1.0}, false, elevation).grid));
+    return TimedElevation{utime, std::move(spline)};
+  };
+  return Sea::of_surfaces({surface(first, [](double x1, double) { return 0.1 * x1; }),
+                           surface(second, [](double, double x2) { return 0.2 * x2 - 1.0; })},
+                          water);
+}
+
+TEST(SeaSnapshot, IsLinearInTimeBetweenTwoSurfaces) {
+  Water water;
+  water.level = 2.0;
+  const Sea sea = sea_of_surfaces(kToday, kToday + 400'000, water);
+  EXPECT_FALSE(sea.is_still());
+  SeaSnapshot now(sea);
+  const auto between = [](double share, double x1, double x2) {
+    return (1.0 - share) * 0.1 * x1 + share * (0.2 * x2 - 1.0);
+  };
+  for (const double share : {-3.0, 0.0, 0.25, 0.75, 1.0, 50.0}) {
+    now.set_time(kToday + static_cast<std::int64_t>(400'000 * share));
+    const double clamped = std::min(std::max(share, 0.0), 1.0);
+    EXPECT_NEAR(now.elevation(3.5, 7.25), between(clamped, 3.5, 7.25), 1e-12) << share;
+    const WaterAtPoint point = now.at({3.5, 7.25, 1.0});
+    EXPECT_NEAR(point.height, 1.0 - water.level - between(clamped, 3.5, 7.25), 1e-12);
+    EXPECT_NEAR(point.pressure, -point.height * water.density * water.gravity, 1e-6);
+    // The surface moves between the two times alone.
+    const double rise = share > 0.0 && share < 1.0 ? (0.2 * 7.25 - 1.0 - 0.1 * 3.5) / 0.4 : 0.0;
+    EXPECT_NEAR((point.velocity_W - rise * Vec3::UnitZ()).norm(), 0.0, 1e-12);
+    EXPECT_EQ(point.acceleration_W, Vec3::Zero());
+  }
+  now.set_time(kToday, 0.1);
+  EXPECT_NEAR(now.elevation(3.5, 7.25), between(0.25, 3.5, 7.25), 1e-12);
+}
+
+TEST(SeaSnapshot, HasNoElevationBeyondTheEdgeOfAGrid) {
+  const Sea sea = sea_of_surfaces(0, 1);
+  const SeaSnapshot now(sea);
+  EXPECT_NEAR(now.elevation(19.0, 0.0), 1.9, 1e-12);
+  for (const auto& [x1, x2] : {std::pair(-0.01, 5.0), {19.01, 5.0}, {5.0, -0.01}, {5.0, 1e300}}) {
+    EXPECT_TRUE(std::isnan(now.elevation(x1, x2))) << x1 << ", " << x2;
+  }
+}
+
+TEST(Sea, OfSurfacesHasTheHighestElevationOfItsGrids) {
+  const Sea sea = sea_of_surfaces(0, 1);
+  EXPECT_NEAR(sea.max_elevation(), 2.8, 0.3);
+  EXPECT_GE(sea.max_elevation(), 2.8);
+  EXPECT_EQ(sea.pressure(), WavePressure::kHydrostatic);
 }
 
 }  // namespace
