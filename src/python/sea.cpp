@@ -1,5 +1,6 @@
 // buoyancy.Sea: the water and its waves, and their motion at many points.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
@@ -144,6 +145,59 @@ std::unique_ptr<SeaObject> make_sea(const std::optional<std::filesystem::path>& 
   return std::make_unique<SeaObject>(SeaObject{value_or_throw(QuerySea::parse(world + water, "Sea()", {}))});
 }
 
+// Two numbers, or one for both.
+std::array<double, 2> to_pair(py::handle object, const char* name) {
+  const Numbers<double> numbers = to_numbers<double>(object.ptr(), name);
+  if (numbers.ndim() == 0) return {*numbers.data(), *numbers.data()};
+  if (numbers.ndim() == 1 && numbers.size() == 2) return {numbers.data()[0], numbers.data()[1]};
+  throw py::value_error(std::string(name) + " has shape " + shape_text(numbers) +
+                        "; expected (2,) or a number");
+}
+
+std::unique_ptr<SeaObject> sea_from_grid(py::handle elevation, py::handle origin, py::handle spacing,
+                                         py::handle level, bool periodic, py::handle up, py::handle gravity,
+                                         py::handle density) {
+  const DefaultFloatingPoint floating_point;
+  const Numbers<double> samples = to_numbers<double>(elevation.ptr(), "elevation");
+  if (samples.ndim() != 2) {
+    throw py::value_error("elevation has shape " + shape_text(samples) + "; expected (rows, columns)");
+  }
+  const ElevationGrid<double> grid{values_of(samples),
+                                   static_cast<std::size_t>(samples.shape(0)),
+                                   static_cast<std::size_t>(samples.shape(1)),
+                                   to_pair(origin, "origin"),
+                                   to_pair(spacing, "spacing"),
+                                   periodic};
+  const Water water = to_water({level.ptr(), density.ptr(), gravity.ptr(), up.ptr()});
+  return std::make_unique<SeaObject>(SeaObject{value_or_throw(QuerySea::from_grid(grid, water))});
+}
+
+std::string to_text(const QuerySea& sea) {
+  if (sea.waves() == nullptr) return "<buoyancy.Sea at rest>";
+  const std::vector<TimedElevation>& surfaces = sea.waves()->surfaces();
+  if (surfaces.empty()) {
+    return "<buoyancy.Sea of " + std::to_string(sea.waves()->components().size()) + " wave components>";
+  }
+  const ElevationSpline& spline = *surfaces.front().spline;
+  return "<buoyancy.Sea of a grid of " + std::to_string(spline.rows()) + " x " +
+         std::to_string(spline.columns()) + " elevations>";
+}
+
+constexpr const char* kFromGridDoc =
+    R"(from_grid(elevation, origin, spacing, level=0.0, periodic=False, up=(0, 0, 1), gravity=9.80665, density=1025.0)
+--
+
+The sea whose surface is the bicubic spline through samples on a grid, at rest at every time.
+
+elevation: (rows, columns), metres over the level, 4 to 4096 of both; a column further is further along the
+first of the horizontal axes (see axes; with up = z the world's x), a row along the second. origin: (2,),
+metres from the world's origin along these axes, of elevation[0, 0]. spacing: (2,), metres between
+neighbours along them, or one number for both. periodic: the surface repeats after columns * spacing[0] and
+rows * spacing[1]; otherwise a body that leaves it gets the status OUT_OF_RANGE, and elevation() is nan
+there. level, up, gravity, density: of the water.
+
+The pressure is hydrostatic. Raises InputError for counts, spacings or elevations out of range.)";
+
 constexpr const char* kSeaDoc =
     R"(The water and its waves.
 
@@ -153,7 +207,7 @@ Sea(level=0.0, density=1025.0, gravity=9.80665, up=(0, 0, 1), depth=inf, wave_pr
     (docs/scene_file.md).
     waves: a dict per wave system, or one dict, such as dict(type="jonswap",
     significant_wave_height=2.0, peak_period=8.0).
-Sea(path) reads them from a scene file.
+Sea(path) reads them from a scene file, and Sea.from_grid() takes samples of a surface.
 
 Times are seconds: the utime of a message over 1e6, rounded to whole microseconds.
 
@@ -196,6 +250,10 @@ the surface. Arguments: see velocity().)";
 void define_sea(py::module_& module) {
   py::class_<SeaObject> type(module, "Sea", kSeaDoc);
   type.def(py::init(&make_sea), py::arg("path") = py::none());
+  type.def_static("from_grid", &sea_from_grid, py::arg("elevation"), py::arg("origin"), py::arg("spacing"),
+                  py::arg("level") = 0.0, py::arg("periodic") = false,
+                  py::arg("up") = py::make_tuple(0, 0, 1), py::arg("gravity") = kStandardGravity,
+                  py::arg("density") = kSeawaterDensity, kFromGridDoc);
   type.def("elevation", &elevation, py::arg("x"), py::arg("y"), py::arg("t"), py::kw_only(),
            py::arg("threads") = 0, kElevationDoc);
   const auto add_motion = [&type](const char* name, auto function, const char* doc) {
@@ -218,12 +276,8 @@ void define_sea(py::module_& module) {
       "Two (3,): the horizontal axes of elevation() and of wave directions, world frame.");
   add_property(
       type, "has_waves", [](const SeaObject& object) { return object.sea.waves() != nullptr; },
-      "bool: is any amplitude above 0?");
-  type.def("__repr__", [](py::handle self) {
-    const QuerySea& sea = instance_of<SeaObject>(self).sea;
-    if (sea.waves() == nullptr) return std::string("<buoyancy.Sea at rest>");
-    return "<buoyancy.Sea of " + std::to_string(sea.waves()->components().size()) + " wave components>";
-  });
+      "bool: is any amplitude above 0, or the surface that of a grid?");
+  type.def("__repr__", [](py::handle self) { return to_text(instance_of<SeaObject>(self).sea); });
 }
 
 }  // namespace buoyancy::python

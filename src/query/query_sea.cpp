@@ -64,6 +64,13 @@ Expected<QuerySea> QuerySea::parse(std::string_view text, const std::string& nam
   return sea;
 }
 
+Expected<QuerySea> QuerySea::from_grid(const ElevationGrid<double>& grid, const Water& water) {
+  auto spline = std::make_shared<ElevationSpline>();
+  if (Expected<void> set = spline->set(grid); !set) return make_error(std::move(set.error()));
+  Sea sea = Sea::of_surfaces({{0, std::move(spline)}}, water);
+  return QuerySea(water, std::make_shared<const PreparedSea>(std::move(sea)), Vec3::Zero());
+}
+
 void sea_elevations(const QuerySea& sea, std::span<const double> x1, std::span<const double> x2,
                     std::span<const std::int64_t> utimes, std::span<double> out, unsigned threads) {
   run_chunks(out.size(), time_per_point(sea), threads, [&](std::size_t begin, std::size_t end) {

@@ -28,6 +28,10 @@ class QuerySea {
   static Expected<QuerySea> parse(std::string_view text, const std::string& name,
                                   const std::filesystem::path& directory);
 
+  // The surface that is the spline through these samples, at all times. Its pressure is hydrostatic. Errors:
+  // those of ElevationSpline::set().
+  static Expected<QuerySea> from_grid(const ElevationGrid<double>& grid, const Water& water);
+
   const Water& water() const { return water_; }
   // nullptr: the water is at rest, since no amplitude is above 0.
   const std::shared_ptr<const PreparedSea>& waves() const { return waves_; }
@@ -48,9 +52,9 @@ class QuerySea {
 };
 
 // Sets out[i] to the elevation of the surface over the level [m] at (x1[i], x2[i]) [m] along the horizontal
-// axes (axes()) from the world's origin, at utimes[i] [us]. utimes: as many, or one for all points, which is
-// quicker by far. All other spans have the same size. threads: see evaluate_poses(). Complexity:
-// O(components) per point.
+// axes (axes()) from the world's origin, at utimes[i] [us]; not a number beyond the edge of a grid. utimes:
+// as many, or one for all points, which is quicker by far. All other spans have the same size. threads: see
+// evaluate_poses(). Complexity: O(components) per point.
 void sea_elevations(const QuerySea& sea, std::span<const double> x1, std::span<const double> x2,
                     std::span<const std::int64_t> utimes, std::span<double> out, unsigned threads = 1);
 

@@ -75,6 +75,65 @@ class DescribesWaterInMotion(TestCase):
         components = [dict(amplitude=0.5, angular_frequency=0.8), dict(amplitude=np.float64(0.2), angular_frequency=1)]
         self.assertTrue(buoyancy.Sea(waves={"type": "components", "components": components}).has_waves)
 
+    def test_of_a_grid(self):
+        x, y = 0.25 * np.arange(60) - 3.0, 0.5 * np.arange(40) - 5.0
+        plane = 0.3 + 0.1 * x + 0.02 * y[:, None]
+        sea = buoyancy.Sea.from_grid(plane, origin=(-3.0, -5.0), spacing=(0.25, 0.5), level=1.0, density=1000, gravity=10)
+        self.assertEqual((sea.level, sea.density, sea.gravity, sea.has_waves), (1.0, 1000.0, 10.0, True))
+        self.assertEqual(repr(sea), "<buoyancy.Sea of a grid of 40 x 60 elevations>")
+        points = np.linspace(-2.9, 11.7, 30), np.linspace(-4.9, 14.4, 30)
+        expected = 0.3 + 0.1 * points[0] + 0.02 * points[1]
+        np.testing.assert_allclose(sea.elevation(*points, np.linspace(0, 1e3, 30)), expected, atol=1e-12)
+        np.testing.assert_allclose(sea.pressure(*points, 0.5, 0), 1e4 * (0.5 + expected), rtol=1e-9)
+        np.testing.assert_array_equal(sea.velocity(*points, 0.5, 0), np.zeros((30, 3)))
+        self.assertTrue(np.isnan(sea.elevation(-3.01, 0, 0)))
+
+    def test_load_in_a_grid(self):
+        vertices = np.array([[x, y, z] for x in (-.5, .5) for y in (-.5, .5) for z in (-.5, .5)])
+        faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6],
+                 [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+        box = buoyancy.Mesh(vertices, faces)
+        calm = buoyancy.Sea.from_grid(np.full((8, 8), 0.25), origin=(-4, -4), spacing=1)
+        position = [[0, 0, 0.25], [1, 1, 5], [1, -1, -5], [3.9, 0, 0]]
+        result = box.query(position, [[1, 0, 0, 0]] * 4, sea=calm)
+        weight = 1025 * 9.80665
+        np.testing.assert_allclose(result.force[:3, 2], [0.5 * weight, 0, weight], atol=1e-3 * weight)
+        self.assertTrue(np.all(np.abs(result.force[:3, 2] - [0.5 * weight, 0, weight]) <= result.force_error_bound[:3]))
+        self.assertEqual([buoyancy.Status(status).name for status in result.status], ["OK"] * 3 + ["OUT_OF_RANGE"])
+        # The wave of a component sea with the same pressure.
+        waves = buoyancy.Sea(wave_pressure="hydrostatic", waves=dict(type="regular", height=0.3, period=1.6, direction=30))
+        axis = 0.05 * np.arange(200) - 5
+        samples = buoyancy.Sea.from_grid(waves.elevation(axis, axis[:, None], 0.7), origin=(-5, -5), spacing=0.05)
+        one, other = (box.query([0.2, 0.1, 0.1], [0.9, 0.1, 0.2, 0.3743], sea=sea, time=0.7, tolerance=1e-5)
+                      for sea in (waves, samples))
+        np.testing.assert_allclose(one.force, other.force, atol=3e-5 * weight)
+        np.testing.assert_allclose(one.torque, other.torque, atol=3e-5 * weight)
+
+    def test_drag_in_a_grid_at_rest(self):
+        scene = buoyancy.Scene.from_text('[water]\nwaves = "received"\n[[body]]\nid = 1\nshape = { type = "box" }\n'
+                                         '[body.drag]\nlinear = [40, 40, 40, 1, 1, 1]\n')
+        still, grid = (scene.query(1, (0, 0, -5), (1, 0, 0, 0), linear_velocity=(2, 0, 0), angular_velocity=(0, 0, 0), sea=sea)
+                       for sea in (buoyancy.Sea(), buoyancy.Sea.from_grid(np.zeros((9, 9)), (-4, -4), 1)))
+        np.testing.assert_allclose(grid.force, still.force, rtol=1e-3)
+        self.assertLess(grid.force[0], -1.0)
+
+    def test_what_is_no_grid_is_refused(self):
+        def sea(elevation=np.zeros((4, 5)), origin=(0, 0), spacing=(1, 1), **keys):
+            return buoyancy.Sea.from_grid(elevation, origin, spacing, **keys)
+        sea()
+        for error, text, keys in (
+                (ValueError, r"elevation has shape \(5,\); expected \(rows, columns\)", dict(elevation=np.zeros(5))),
+                (ValueError, r"origin has shape \(3,\)", dict(origin=(1, 2, 3))),
+                (TypeError, "spacing", dict(spacing="1")),
+                (TypeError, "elevation", dict(elevation=np.zeros((4, 4), dtype=complex))),
+                (buoyancy.InputError, "3 rows and 5 columns; expected 4 to 4096", dict(elevation=np.zeros((3, 5)))),
+                (buoyancy.InputError, r"elevation.0..1. = nan", dict(elevation=np.full((4, 4), [0, np.nan, 0, 0]))),
+                (buoyancy.InputError, r"spacing.1. = 0; expected", dict(spacing=(1, 0))),
+                (buoyancy.InputError, "density = -1", dict(density=-1)),
+                (buoyancy.InputError, "up = 0, 0, 0; expected a direction", dict(up=(0, 0, 0)))):
+            with self.assertRaisesRegex(error, text):
+                sea(**keys)
+
     def test_deep_files_are_refused(self):
         for text in ("a" + ".a" * 50_000 + " = 1", "[" + "a." * 50_000 + "a]", "a = " + "[" * 1_000_000):
             with tempfile.NamedTemporaryFile("w", suffix=".toml") as scene:

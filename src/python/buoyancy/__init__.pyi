@@ -95,6 +95,17 @@ class Sea:
         current: Mapping[str, Any] = ...,
         layer: Sequence[Mapping[str, Any]] = ...,
     ) -> None: ...
+    @staticmethod
+    def from_grid(
+        elevation: ArrayLike,  # (rows, columns), m
+        origin: ArrayLike,
+        spacing: ArrayLike,
+        level: float = 0.0,
+        periodic: bool = False,
+        up: ArrayLike = (0, 0, 1),
+        gravity: float = 9.80665,
+        density: float = 1025.0,
+    ) -> Sea: ...
     def elevation(self, x: ArrayLike, y: ArrayLike, t: ArrayLike, *, threads: int = 0) -> Union[Array, float]: ...
     def velocity(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, t: ArrayLike, *, threads: int = 0
