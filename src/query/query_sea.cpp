@@ -68,7 +68,7 @@ Expected<QuerySea> QuerySea::from_grid(const ElevationGrid<double>& grid, const 
   auto spline = std::make_shared<ElevationSpline>();
   if (Expected<void> set = spline->set(grid); !set) return make_error(std::move(set.error()));
   Sea sea = Sea::of_surfaces({{0, std::move(spline)}}, water);
-  return QuerySea(water, std::make_shared<const PreparedSea>(std::move(sea)), Vec3::Zero());
+  return QuerySea(water, std::make_shared<const PreparedSea>(std::move(sea)), Current{});
 }
 
 void sea_elevations(const QuerySea& sea, std::span<const double> x1, std::span<const double> x2,
