@@ -139,7 +139,7 @@ PoseTable poses_with_times(std::uint64_t seed) {
 WrenchTable expected_of_mesh(const Case& of) {
   const auto mesh = of.path.empty() ? checked(QueryMesh::make(of.vertices, of.faces, "mesh"))
                                     : checked(QueryMesh::load(of.path));
-  QueryWater water{.at_rest = of.water, .waves = nullptr};
+  QueryWater water{.at_rest = of.water, .waves = nullptr, .current = {}};
   water.at_rest.up_W = (of.water.up_W / of.water.up_W.cwiseAbs().maxCoeff()).normalized();
   if (!of.text.empty()) water = water_of(checked(QuerySea::parse(of.text, "sea", {})));
   const Method method =
