@@ -178,6 +178,17 @@ TEST_F(RunFileTest, CountsRetriesOnceAndComputesMissingResponses) {
   EXPECT_NEAR(run.bodies[0].rows[1][kRoundTrip], 1.1e-3, 1e-12) << "from the first request";
 }
 
+// A log may hold 4,096 requests before the response to the first of them.
+TEST_F(RunFileTest, MatchesResponsesOfUpTo4096RequestsBefore) {
+  for (const std::int64_t later : {4'095, 4'096}) {
+    log_ = {};
+    for (std::int64_t seq = 0; seq <= later; ++seq) log_request(1'000 * seq, request_at(seq, 0.0));
+    log_response(1'000 * later + 500, request_at(0, 0.0));
+    const RecordedRun run = read_log().value();
+    EXPECT_EQ(run.computed, later == 4'095 ? later : later + 1) << later;
+  }
+}
+
 // A body that falls at 1 m/s and states millimetres per second; two requests are missing.
 TEST_F(RunFileTest, NotesWhatTheLogLacksAndContradicts) {
   for (std::int64_t seq = 0; seq < 20; ++seq) {
