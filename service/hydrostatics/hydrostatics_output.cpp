@@ -98,9 +98,14 @@ std::string parts_text(const PartRows& parts, std::size_t row) {
   std::string text;
   for (std::size_t i = 0; i < parts.names.size(); ++i) {
     const DisplacedPart& part = parts.rows[row][i];
+    if (part.volume == 0.0) {
+      text += fmt::format("           {} displaces nothing\n", parts.names[i]);
+      continue;
+    }
+    // + 0.0: no negative zeros
     text += fmt::format("           {} displaces {:.6g} m^3, {:.6g} kg, centre ({:.6g}, {:.6g}, {:.6g}) m\n",
-                        parts.names[i], part.volume, part.mass, part.center_B.x(), part.center_B.y(),
-                        part.center_B.z());
+                        parts.names[i], part.volume, part.mass, part.center_B.x() + 0.0,
+                        part.center_B.y() + 0.0, part.center_B.z() + 0.0);
   }
   return text;
 }

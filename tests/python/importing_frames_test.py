@@ -240,7 +240,7 @@ class GroupsLinksIntoBodies(ImportTestCase):
         model = link() + link("weight", inertial(20))
         result = self.import_model(sdf(model + plugin.format("__model__")))
         self.assertEqual(result.body["client"]["mass"], 520)
-        self.assertIn("note: link 'weight' is fixed to 'base', until it is dropped", result.output)
+        self.assertIn("note: the model fixes link 'weight' to 'base' until it is dropped", result.output)
         self.assertEqual(self.import_model(sdf(model + plugin.format("tow"))).body["client"]["mass"], 500)
 
     def test_links_that_plugins_drive_are_propellers(self):

@@ -258,6 +258,10 @@ position = [0, 3, 0]
 name = "starboard"
 shape = { type = "box", size = [10, 1, 2], segments = [1, 1, 1] }
 position = [0, -3, 0]
+[[body.part]]
+name = "mast"
+shape = { type = "box", size = [0.1, 0.1, 1], segments = [1, 1, 1] }
+position = [0, 0, 10]
 [body.client]
 mass = 10250.0
 center_of_mass = [0, 0.5, -0.5]
@@ -265,11 +269,14 @@ center_of_mass = [0, 0.5, -0.5]
   const FinishedProcess text = run({"equilibrium", "--scene", scene});
   ASSERT_EQ(text.exit_code, 0) << text.standard_error;
   EXPECT_TRUE(contains(text.standard_output, "starboard displaces"));
+  EXPECT_TRUE(contains(text.standard_output, "mast displaces nothing\n")) << text.standard_output;
+  EXPECT_FALSE(contains(text.standard_output, "(-0,")) << text.standard_output;
   const auto at = nlohmann::json::parse(run({"equilibrium", "--scene", scene, "--json"}).standard_output)
                       .at("attitudes")
                       .at(0);
   const auto& parts = at.at("parts");
-  ASSERT_EQ(parts.size(), 2U);
+  ASSERT_EQ(parts.size(), 3U);
+  EXPECT_TRUE(parts[2].at("center_of_buoyancy").is_null());
   EXPECT_EQ(parts[0].at("name"), "port");
   EXPECT_GT(parts[0].at("mass").get<double>(), parts[1].at("mass").get<double>());
   EXPECT_NEAR(parts[0].at("mass").get<double>() + parts[1].at("mass").get<double>(), 10250.0, 1e-6);

@@ -215,7 +215,7 @@ class SdfReader:
             parent, child = (plugin.prefix + element.text_of(f"{end}_link") for end in ("parent", "child"))
             if parent in model.links and child in model.links:
                 model.joints.append(Joint(f"DetachableJoint of {child}", parent, child, True, element))
-                self.report.note(f"link '{child}' is fixed to '{parent}', until it is dropped", element)
+                self.report.note(f"the model fixes link '{child}' to '{parent}' until it is dropped", element)
 
     def _link(self, scope, element, name, place, scope_pose):
         link = Link(name, place, element, has_sensor=bool(element.all("sensor")))
