@@ -197,11 +197,11 @@ TEST(ElevationSpline, BoundsEveryEntryOfTheThirdDerivative) {
 // In waves that the samples resolve, away from the edges.
 TEST(ElevationSpline, BoundsAreTightInARegularWave) {
   constexpr double kAmplitude = 0.5;
-  constexpr double k = 2.0;
-  constexpr double kThird = kAmplitude * k * k * k;
+  constexpr double kWaveNumber = 2.0;
+  constexpr double kThird = kAmplitude * kWaveNumber * kWaveNumber * kWaveNumber;
   for (const double direction : {0.0, 0.4, 2.0}) {
     const auto wave = [&](double x1, double x2) {
-      return kAmplitude * std::cos(k * (x1 * std::cos(direction) + x2 * std::sin(direction)));
+      return kAmplitude * std::cos(kWaveNumber * (x1 * std::cos(direction) + x2 * std::sin(direction)));
     };
     const ElevationSpline spline = spline_of(sampled(80, 90, {-4.0, -4.0}, {0.1, 0.12}, false, wave));
     const ElevationBounds bounds = spline.bounds_over({{-2.0, -2.0}, {2.0, 2.0}});
