@@ -1,5 +1,5 @@
-// Error-free sums and products, and the bits of masks, which the SIMD kernels of several folders share. This
-// file is included once per instruction set, after highway.h.
+// Error-free sums and products, sums of lanes, and the bits of masks, which the SIMD kernels of several
+// folders share. This file is included once per instruction set, after highway.h.
 #if defined(BUOYANCY_SIMD_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BUOYANCY_SIMD_INL_H
 #undef BUOYANCY_SIMD_INL_H
@@ -61,6 +61,19 @@ HWY_INLINE DoubleDoubles<V> two_product(V a, V b) {
   rest = hn::Add(hn::Add(rest, hn::Mul(a_hi, b_lo)), hn::Mul(a_lo, b_hi));
   return {product, hn::Add(rest, hn::Mul(a_lo, b_lo))};
 #endif
+}
+
+// Returns the sum of the lanes: as long as there are several, the upper half is added to the lower half. The
+// order of Highway's SumOfLanes() depends on its version and on the instruction set.
+template <typename V>
+HWY_INLINE hn::TFromV<V> sum_of_lanes(V lanes) {
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (hn::MaxLanes(hn::DFromV<V>()) > 1) {
+    const hn::Half<hn::DFromV<V>> half;
+    return sum_of_lanes(hn::Add(hn::LowerHalf(half, lanes), hn::UpperHalf(half, lanes)));
+  }
+#endif
+  return hn::GetLane(lanes);
 }
 
 // Returns the lanes of a mask as bits, the first lane in the lowest bit. Requires at most 16 lanes.

@@ -157,11 +157,10 @@ class LeafSums {
   HWY_INLINE void finish(WettedTreeSum& sum) const {
     const Reals d;
     sum.rounding = rounding_;
-    sum.volume6 = hn::GetLane(hn::SumOfLanes(d, volume6_));
-    sum.moment_b24 = hn::GetLane(hn::SumOfLanes(d, moment_b24_));
-    sum.moment_c24 = hn::GetLane(hn::SumOfLanes(d, moment_c24_));
-    sum.z_squared12 =
-        hn::GetLane(hn::SumOfLanes(d, hn::MulAdd(hn::Set(d, 0.5), whole_z_squared24_, cut_z_squared12_)));
+    sum.volume6 = sum_of_lanes(volume6_);
+    sum.moment_b24 = sum_of_lanes(moment_b24_);
+    sum.moment_c24 = sum_of_lanes(moment_c24_);
+    sum.z_squared12 = sum_of_lanes(hn::MulAdd(hn::Set(d, 0.5), whole_z_squared24_, cut_z_squared12_));
   }
 
  private:

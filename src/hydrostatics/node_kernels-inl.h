@@ -284,9 +284,9 @@ HWY_INLINE ErrorSurvey survey_errors(PrunableNodes& nodes, double left) {
     const std::uint32_t leaves = leaf_bits(nodes.child.data() + first) & first_bits(nodes.size - first);
     survey.leaves += static_cast<std::size_t>(__builtin_popcount(leaves));
   }
-  survey.all = hn::GetLane(hn::SumOfLanes(d, all));
+  survey.all = sum_of_lanes(all);
   for (std::size_t limit = 0; limit < ErrorSurvey::kLimits.size(); ++limit) {
-    survey.within[limit] = hn::GetLane(hn::SumOfLanes(d, within[limit]));
+    survey.within[limit] = sum_of_lanes(within[limit]);
   }
   return survey;
 }
@@ -424,10 +424,9 @@ class PrunedSums {
   }
 
   HWY_INLINE void finish(PrunedSum& sum) const {
-    const Reals d;
     offsets_.finish(sum.offsets);
-    sum.volume = hn::GetLane(hn::SumOfLanes(d, volume_));
-    for (int i = 0; i < 3; ++i) sum.moment[i] = hn::GetLane(hn::SumOfLanes(d, moment_[i]));
+    sum.volume = sum_of_lanes(volume_);
+    for (int i = 0; i < 3; ++i) sum.moment[i] = sum_of_lanes(moment_[i]);
   }
 
  private:

@@ -84,13 +84,12 @@ class EdgeSums {
 
   HWY_INLINE void finish(WaterlineSum& sum) const {
     const Reals d;
-    const auto total = [&](RealVector lanes) { return hn::GetLane(hn::SumOfLanes(d, lanes)); };
-    sum.area = total(area_);
-    sum.u = total(first_u_);
-    sum.v = total(first_v_);
-    sum.uu = total(uu_);
-    sum.uv = total(uv_);
-    sum.vv = total(vv_);
+    sum.area = sum_of_lanes(area_);
+    sum.u = sum_of_lanes(first_u_);
+    sum.v = sum_of_lanes(first_v_);
+    sum.uu = sum_of_lanes(uu_);
+    sum.uv = sum_of_lanes(uv_);
+    sum.vv = sum_of_lanes(vv_);
     sum.min_u = hn::GetLane(hn::MinOfLanes(d, min_u_));
     sum.max_u = hn::GetLane(hn::MaxOfLanes(d, max_u_));
     sum.min_v = hn::GetLane(hn::MinOfLanes(d, min_v_));

@@ -215,7 +215,7 @@ HWY_INLINE double keep_within(float limit, PrunableNodes& open, std::uint32_t* i
     inners += descent.add_open(open.child.data() + first, present & ~within, inner + inners);
     keep_prunable(open, first, present & within);
   }
-  return hn::GetLane(hn::SumOfLanes(d, kept));
+  return sum_of_lanes(kept);
 }
 
 // Descends level by level: as soon as the total error of the open nodes fits into the remaining budget, all

@@ -59,7 +59,7 @@ struct WettedTreeSum {
 // is used; otherwise no heap is used once the thread has seen a tree as large.
 WettedTreeSum sum_wetted_tree(const MomentTree& tree, const TreeQuery& query);
 
-// The targets that this processor can run, the best first; "SCALAR" is always among them.
+// The targets that this processor can run, the best first. The last one is the least that the build requires.
 std::vector<std::string> simd_targets();
 std::string simd_target();  // the target in use
 // Selects a target for all threads; "" selects the best. Returns false if it is not one of simd_targets().

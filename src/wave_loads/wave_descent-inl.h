@@ -134,7 +134,7 @@ class Descent {
       const F error = wet + hn::IfThenElseZero(hn::Gt(zeta, hn::Neg(reach)), crossing);
       sum = sum + hn::IfThenElseZero(hn::Lt(zeta, reach), error);
     }
-    return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, sum))) > kShare * query_.budget;
+    return static_cast<double>(sum_of_lanes(sum)) > kShare * query_.budget;
   }
 
   // Replaces results above a threshold by those of their children, or clips them. Returns whether there are

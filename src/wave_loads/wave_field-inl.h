@@ -9,6 +9,7 @@
 #endif
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -145,7 +146,7 @@ HWY_NOINLINE void finish(const MonomialCoefficients<Number>& of_cell, Number tai
     for (int q = 0; q <= l; q += static_cast<int>(kLanes<Number>)) {
       squares = hn::MulAdd(factors.norm.at(l, q) * e.at(l, q), e.at(l, q), squares);
     }
-    cell.bounds.sigma[static_cast<std::size_t>(l)] = hn::GetLane(hn::Sqrt(hn::SumOfLanes(d, squares)));
+    cell.bounds.sigma[static_cast<std::size_t>(l)] = std::sqrt(sum_of_lanes(squares));
   }
   cell.bounds.tail = tail;
 }
@@ -348,7 +349,7 @@ HWY_NOINLINE void finish(HarmonicCoefficients<Number>& of_cell, Number tail, Vol
       const V both = hn::MulAdd(A.at(l, m), A.at(l, m), B.at(l, m) * B.at(l, m));
       squares = hn::MulAdd(factors.norm.at(l, m), both, squares);
     }
-    cell.bounds.sigma[static_cast<std::size_t>(l)] = hn::GetLane(hn::Sqrt(hn::SumOfLanes(d, squares)));
+    cell.bounds.sigma[static_cast<std::size_t>(l)] = std::sqrt(sum_of_lanes(squares));
   }
   cell.bounds.tail = tail;
 }

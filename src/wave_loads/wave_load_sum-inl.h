@@ -69,7 +69,7 @@ class LoadSum {
     const VectorOf<Number> share = integrals.expected / hn::Max(integrals.force_error, set<Number>(1e-30));
     hn::StoreU(error, d, &errors_[first]);
     hn::StoreU(error * share, d, &expected_[first]);
-    total_ += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, error)));
+    total_ += static_cast<double>(sum_of_lanes(error));
     for (std::uint32_t lanes = kept.leaves; lanes != 0; lanes &= lanes - 1) {
       const auto n = first + static_cast<std::size_t>(std::countr_zero(lanes));
       expected_[n] = errors_[n] * static_cast<Number>(kErrorOfClipping);
@@ -150,7 +150,7 @@ class LoadSum {
       }
     }
     std::array<double, kRows> total;
-    for (std::size_t row = 0; row < kRows; ++row) total[row] = hn::GetLane(hn::SumOfLanes(d, sums[row]));
+    for (std::size_t row = 0; row < kRows; ++row) total[row] = sum_of_lanes(sums[row]);
     WaveLoad load;
     const auto vector = [&](std::size_t row) { return Vec3(total[row], total[row + 1], total[row + 2]); };
     load.force = vector(kForce);
@@ -220,7 +220,7 @@ HWY_INLINE double predicted(std::span<const Number> errors, std::span<const Numb
         hn::Min(hn::LoadU(d, &expected[n]), hn::LoadU(d, &roots[n]) * root_of_limit);
     sum = sum + hn::IfThenElse(hn::Gt(error, hn::Set(d, limit)), left, error);
   }
-  return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, sum)));
+  return static_cast<double>(sum_of_lanes(sum));
 }
 
 // The error above which patches are refined, so that the sum of the errors can be expected to fit the budget.

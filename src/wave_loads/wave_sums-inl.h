@@ -239,7 +239,7 @@ HWY_NOINLINE Number set_amplitudes(const ExpansionTable<Number>& table, double f
     hn::StoreU(amplitude, d, even + i);
     tail = hn::MulAdd(amplitude, hn::LoadU(d, &table.tail[i]), tail);
   }
-  return hn::GetLane(hn::SumOfLanes(d, tail));
+  return sum_of_lanes(tail);
 }
 
 // The amplitudes of f at a height z over 1 / k_max. In deep water those of odd derivatives are the same and
@@ -263,7 +263,7 @@ HWY_NOINLINE Number set_amplitudes(const ExpansionTable<Number>& table, double f
     hn::StoreU(of_even, d, even + i);
     tail = hn::MulAdd(of_even, hn::LoadU(d, &table.tail[i]), tail);
   }
-  return hn::GetLane(hn::SumOfLanes(d, tail));
+  return sum_of_lanes(tail);
 }
 
 // Sets the weights of all components at a cell's centre. same: whether odd derivatives have the amplitudes of

@@ -411,7 +411,7 @@ class SurfaceIntegral {
       my = my + x2 * column;
       mz = mz + (x3 - half * s) * column;
     }
-    const auto sum = [d](const auto& lanes) { return hn::GetLane(hn::SumOfLanes(d, lanes)); };
+    const auto sum = [](const auto& lanes) { return sum_of_lanes(lanes); };
     sum_.add_block(
         {{sum(fx), sum(fy), sum(fz)}, {sum(tx), sum(ty), sum(tz)}, {sum(mx), sum(my), sum(mz)}, sum(v)});
     count_ = 0;

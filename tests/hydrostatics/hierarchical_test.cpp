@@ -212,11 +212,13 @@ TriangleMesh bulged_box() {
 TEST(Hierarchical, IsBitIdenticalAcrossCompilersAndBuildTypes) {
   const TriangleMesh source = bulged_box();
   const HydrostaticMesh mesh = make_hydrostatic_mesh({source, {}});
-  const std::map<std::string, std::uint64_t> golden{
-      {"AVX3_DL", 0xf0cb2f6d94bc5ecf}, {"AVX3", 0xf0cb2f6d94bc5ecf},  {"AVX2", 0xf8ebf569bd85e4e5},
-      {"SSE4", 0xc2063524bac06932},    {"SSSE3", 0xc2063524bac06932}, {"SCALAR", 0x174f2ad79158f28}};
+  const std::map<std::string, std::uint64_t> golden{{"AVX3", 0xf0cb2f6d94bc5ecf},
+                                                    {"AVX2", 0xf8ebf569bd85e4e5},
+                                                    {"SSE4", 0xc2063524bac06932},
+                                                    {"SSSE3", 0xc2063524bac06932},
+                                                    {"SCALAR", 0x174f2ad79158f28}};
   for (const std::string& target : simd_targets()) {
-    const auto known = golden.find(target);
+    const auto known = golden.find(target.substr(0, target.find('_')));  // AVX3_DL and others compute as AVX3
     if (known == golden.end()) continue;  // no golden value has been recorded for this instruction set
     const ForcedTarget forced(target);
     BitHash hash;
