@@ -40,8 +40,11 @@ WaterAtTime::Change WaterAtTime::move_to(const std::shared_ptr<const SeaPeriod>&
   const bool changed = !same_sea || (has_waves && (utime != utime_ || lead_time != lead_time_));
   if (changed) {
     period_.reset();  // so that a failed allocation leaves no sea of another time
-    if (!same_sea) waves_.reset();
-    if (!same_sea && has_waves) waves_.emplace(*period->sea);
+    if (!has_waves) {
+      waves_.reset();
+    } else if (!same_sea) {
+      waves_.emplace(*period->sea);
+    }
     if (has_waves) waves_->set_time(utime, lead_time);
     period_ = period;
   }
