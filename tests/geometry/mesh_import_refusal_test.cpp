@@ -105,7 +105,13 @@ TEST_F(MeshImportErrors, NameContentThatDoesNotMatchExtension) {
          {".obj", ".stl", ".ply", ".off", ".dae", ".gltf", ".glb", ".fbx", ".3ds", ".gdf", ".dat"}) {
       if (other == own) continue;
       SCOPED_TRACE(std::string(name).append(" as ").append(other));
-      const std::string message = import_error(directory_.write("disguised" + other, content));
+      const fs::path disguised = directory_.write("disguised" + other, content);
+      if (own.starts_with(".gl") &&
+          other.starts_with(".gl")) {  // assimp 5.4 reads glTF under both extensions
+        expect_mesh_or_complete_error(disguised, {});
+        continue;
+      }
+      const std::string message = import_error(disguised);
       if (name == "binary.stl" || own == ".gdf" || own == ".dat") continue;  // no first bytes of their own
       EXPECT_TRUE(contains(message, "the content looks like"));
       EXPECT_TRUE(contains(message, "give it the extension " + own));
