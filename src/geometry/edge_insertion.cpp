@@ -274,8 +274,8 @@ SplitMesh split_edges(const TriangleMesh& mesh, std::span<const EdgeInsertion> i
     for (std::size_t side = 0; side < 3; ++side) {
       const std::int32_t low = std::min(face[side], face[(side + 1) % 3]);
       if (!has_insertion[static_cast<std::size_t>(low)]) continue;
-      for (const EdgeInsertion& insertion :
-           insertions_of(insertions, {low, std::max(face[side], face[(side + 1) % 3])})) {
+      const Edge edge{low, std::max(face[side], face[(side + 1) % 3])};
+      for (const EdgeInsertion& insertion : insertions_of(insertions, edge)) {
         distance = std::max(distance, insertion.distance);
       }
     }
