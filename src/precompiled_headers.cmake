@@ -79,10 +79,11 @@ function(buoyancy_reuse_precompiled_headers folder)
       continue()
     endif()
     get_target_property(position_independent ${target} POSITION_INDEPENDENT_CODE)
-    if("${libraries}" MATCHES "GTest::")
+    if(folder MATCHES "^${PROJECT_SOURCE_DIR}/tests")  # compiled with -O1
+      if(NOT "${libraries}" MATCHES "GTest::")
+        continue()  # too few for a kind of their own
+      endif()
       set(kind test)
-    elseif(folder MATCHES "^${PROJECT_SOURCE_DIR}/tests")
-      continue()  # -O1 without GoogleTest: too few for a kind of their own
     elseif(position_independent)
       set(kind library)
     else()
