@@ -20,12 +20,7 @@ void ArgumentChecks::fail(const char* name, std::string actual, std::string expe
       {std::move(subject), std::move(actual), std::move(expected), std::move(cause), std::move(hint)}};
 }
 
-void ArgumentChecks::not_null(const char* name, const void* pointer) {
-  if (pointer == nullptr) fail(name, "NULL", "a valid pointer");
-}
-
-void ArgumentChecks::aligned(const char* name, const void* pointer, std::size_t alignment) {
-  if (reinterpret_cast<std::uintptr_t>(pointer) % alignment == 0) return;
+void ArgumentChecks::fail_alignment(const char* name, std::size_t alignment) {
   fail(name, "an address that is no multiple of " + std::to_string(alignment), "an array of numbers",
        "the address of bytes, or no address at all");
 }

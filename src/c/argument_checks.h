@@ -23,7 +23,9 @@ class ArgumentChecks {
   // name: of the argument, for errors; also in the functions below.
   void fail(const char* name, std::string actual, std::string expected, std::string cause = "",
             std::string hint = "");
-  void not_null(const char* name, const void* pointer);
+  void not_null(const char* name, const void* pointer) {
+    if (pointer == nullptr) fail(name, "NULL", "a valid pointer");
+  }
   void number(const char* name, double value, bool valid, const char* expected);
   void count(const char* name, std::int64_t value, std::int64_t max);
   unsigned threads(std::int32_t value);
@@ -71,7 +73,8 @@ class ArgumentChecks {
   std::span<Number> array(const char* name, Number* elements, std::int64_t n, std::size_t per_item = 1) {
     if (n <= 0 || failed()) return {};
     not_null(name, elements);
-    aligned(name, elements, alignof(Number));
+    if (reinterpret_cast<std::uintptr_t>(elements) % alignof(Number) != 0)
+      fail_alignment(name, alignof(Number));
     if (failed()) return {};
     return {elements, per_item * static_cast<std::size_t>(n)};
   }
@@ -87,7 +90,7 @@ class ArgumentChecks {
 
  private:
   bool has_handle(const char* name, const void* handle, HandleKind kind);
-  void aligned(const char* name, const void* pointer, std::size_t alignment);
+  void fail_alignment(const char* name, std::size_t alignment);
 
   const char* function_;
   CallResult failure_;

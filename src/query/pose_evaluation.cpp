@@ -41,7 +41,9 @@ void store(const BodyWrench& wrench, const WrenchArrays& out, std::size_t i) {
   out.torque_error_bounds[i] = wrench.torque_error_bound;
 }
 
-// Evaluates the poses of one range on one thread.
+// Evaluates the poses of one range on one thread, up to kGroup of them together: setting up a large group
+// costs as much as half a pose.
+template <std::size_t kGroup>
 class RangeEvaluation {
  public:
   RangeEvaluation(const Body& body, const QueryWater& water, const PoseArrays& poses,
@@ -80,7 +82,7 @@ class RangeEvaluation {
                                 .condition = nullptr,
                                 .outcome = &outcomes_[pending_count_]};
     // The next pose may move the waves, so that each is computed on its own.
-    if (++pending_count_ == kMaxGroup || now_.waves != nullptr) compute_group();
+    if (++pending_count_ == kGroup || now_.waves != nullptr) compute_group();
   }
 
   // The pending poses are in water at rest, and are computed before waves begin.
@@ -114,9 +116,9 @@ class RangeEvaluation {
   FullySubmerged submerged_;
   MovingSea sea_;
   WaterState now_;
-  std::array<PoseQuery, kMaxGroup> queries_;
-  std::array<BodyOutcome, kMaxGroup> outcomes_;
-  std::array<std::size_t, kMaxGroup> pending_{};  // the index of each query's pose
+  std::array<PoseQuery, kGroup> queries_;
+  std::array<BodyOutcome, kGroup> outcomes_;
+  std::array<std::size_t, kGroup> pending_{};  // the index of each query's pose
   std::size_t pending_count_ = 0;
 };
 
@@ -136,9 +138,10 @@ QueryWater water_of(const Scene& scene) {
 void evaluate_poses(const Body& body, const QueryWater& water, const PoseArrays& poses,
                     const WrenchArrays& wrenches, std::span<BodyLoads> loads, unsigned threads) {
   assert(wrenches.statuses.size() == poses.size() && (loads.empty() || loads.size() == poses.size()));
+  if (poses.size() == 1) return RangeEvaluation<1>(body, water, poses, wrenches, loads).run(0, 1);
   run_chunks(poses.size(), estimated_time(body.solver, water.waves != nullptr), threads,
              [&](std::size_t begin, std::size_t end) {
-               RangeEvaluation(body, water, poses, wrenches, loads).run(begin, end);
+               RangeEvaluation<kMaxGroup>(body, water, poses, wrenches, loads).run(begin, end);
              });
 }
 
