@@ -1,7 +1,7 @@
 // Converts a water plane to the coordinates of a moment tree (MomentTree::scale) and to a TreeQuery.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <cstddef>
 
 #include "base/double_double.h"
@@ -26,9 +26,11 @@ inline WaterPlane plane_of_tree(const MomentTree& tree, const WaterPlane& plane)
   return result;
 }
 
-// Returns x rounded to a whole multiple of unit, a power of two.
+// Returns x rounded to a whole multiple of unit, a power of two, to the nearest where |x| is at most 2^51
+// unit: the spacing of doubles near the sum is the unit.
 inline double whole_multiples(double x, double unit) {
-  return std::nearbyint(x / unit) * unit;
+  const double large = 0x1.8p52 * unit;
+  return (x + large) - large;
 }
 
 // plane: in the coordinates of the tree. The caller sets budget and half_diagonal of the result.
@@ -36,9 +38,11 @@ inline TreeQuery make_tree_query(const MomentTree& tree, const WaterPlane& plane
   constexpr double kUnit = 0x1p-26;
   const Vec3& k = plane.up_B;
   TreeQuery query{};
-  Vec3::Index a = 0;
-  k.cwiseAbs().maxCoeff(&a);
-  for (std::size_t n = 0; n < 3; ++n) query.axes[n] = (static_cast<std::size_t>(a) + n) % 3;
+  // Without a branch, which could not be predicted.
+  const Vec3 size = k.cwiseAbs();
+  const auto of_x_y = static_cast<std::size_t>(size.y() > size.x());
+  const std::size_t a = size.z() > std::max(size.x(), size.y()) ? 2 : of_x_y;
+  for (std::size_t n = 0; n < 3; ++n) query.axes[n] = (a + n) % 3;
   for (int i = 0; i < 3; ++i) {
     const auto n = static_cast<std::size_t>(i);
     query.k[n] = k[i];

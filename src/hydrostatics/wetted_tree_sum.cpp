@@ -87,6 +87,9 @@ class Descent {
     sum_.nodes_pruned += static_cast<std::int64_t>(nodes.size);
   }
 
+  // Queues the leaf of a tree that has only one: its vertices decide no later than its bounds.
+  HWY_INLINE void add_only_leaf() { leaf_queue_[num_leaves_++] = 0; }
+
   HWY_INLINE void finish() {
     drain();
     leaf_sums_.finish(sum_);
@@ -190,7 +193,11 @@ HWY_INLINE void descend_exactly(const MomentTree& tree, const std::uint32_t* nod
 void sum_exactly(const MomentTree& tree, const TreeQuery& query, WettedTreeSum& sum) {
   Descent descent(tree, query, sum);
   const std::uint32_t root = 0;
-  descend_exactly(tree, &root, 1, descent);
+  if (tree.num_leaves() == 1) {
+    descent.add_only_leaf();
+  } else {
+    descend_exactly(tree, &root, 1, descent);
+  }
   descent.finish();
 }
 
