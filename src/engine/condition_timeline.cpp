@@ -6,12 +6,11 @@
 #include <utility>
 
 #include "base/format.h"
-#include "base/number_range.h"
+#include "engine/condition_range.h"
 
 namespace buoyancy {
 namespace {
 
-constexpr double kRounding = 1e-9;  // relative, of a tank's volume as senders compute it
 constexpr const char* kUntilThen =
     "Correct the sender; until it sends one that can be used, the body has the status BAD_CONDITION";
 
@@ -56,21 +55,17 @@ Error unknown_index(const Body& body, const ConditionChange& change, std::size_t
 Expected<double> value_of(const Body& body, const ConditionChange& change) {
   const auto index = static_cast<std::size_t>(change.index);
   if (change.kind == ConditionKind::kCompartment) {
-    const NumberRange range = NumberRange::from_zero_to(1.0);
-    if (range.contains(change.flooded)) return change.flooded;
+    if (kFloodedRange.contains(change.flooded)) return change.flooded;
     return make_error({subject(body) + ", " + body.subdivision->compartments[index].name,
-                       "flooded = " + format_shortest(change.flooded), range.describe(),
+                       "flooded = " + format_shortest(change.flooded), kFloodedRange.describe(),
                        "the sender means a percentage or a volume: it is the share that is open to the sea",
                        kUntilThen});
   }
   const BodyTank& tank = body.subdivision->tanks[index];
-  const double capacity = tank.capacity();
-  if (NumberRange::from_zero_to(capacity * (1.0 + kRounding)).contains(change.liquid_volume)) {
-    return std::min(change.liquid_volume, capacity);
-  }
+  if (const auto volume = usable_liquid_volume(tank, change.liquid_volume)) return *volume;
   return make_error({subject(body) + ", " + tank.name,
                      "liquid_volume = " + format_shortest(change.liquid_volume),
-                     "from 0 to the tank's volume, " + format_number(capacity) + " m^3",
+                     "from 0 to the tank's volume, " + format_number(tank.capacity()) + " m^3",
                      "the sender means litres, a mass or a fraction", kUntilThen});
 }
 

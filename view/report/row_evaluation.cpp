@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "engine/load_evaluation.h"
+#include "engine/state_evaluation.h"
 #include "engine/water_at_time.h"
 #include "view/common/scene_model.h"
 
@@ -39,25 +39,6 @@ WaterState water_of(const RowLoads& row, const Scene& scene, WaterAtTime& water)
 
 }  // namespace
 
-RowEvaluation evaluate_row(const Body& body, const WaterState& water, const Current& current,
-                           const BodyState& state, double lead_time, const BodyCondition* condition) {
-  const ValidatedPose pose = validate_pose(state, lead_time);
-  BodyOutcome outcome;
-  outcome.status = pose.status;
-  if (outcome.status == BodyStatus::kOk) {
-    outcome.status = check_state(state, lead_time, water, body.hydrodynamics != nullptr,
-                                 body.subdivision == nullptr || condition != nullptr);
-  }
-  if (outcome.status == BodyStatus::kOk) evaluate(body, water, pose, outcome, condition);
-  RowEvaluation evaluation{.wrench = to_wrench(body.id, outcome), .loads = std::nullopt};
-  BodyWrench& wrench = evaluation.wrench;
-  if (!has_loads(body) || wrench.status != BodyStatus::kOk) return evaluation;
-  buoyancy::add_loads(body, water, current, pose.pose, twist_of(state), outcome, wrench,
-                      &evaluation.loads.emplace());
-  if (wrench.status != BodyStatus::kOk) evaluation.loads.reset();
-  return evaluation;
-}
-
 void add_loads(const Scene& scene, const Body& body, const std::vector<KeptRow>& rows, BodyRun& run) {
   WaterAtTime water(scene);
   run.loads.reserve(rows.size());
@@ -71,8 +52,8 @@ void add_loads(const Scene& scene, const Body& body, const std::vector<KeptRow>&
       continue;
     }
     const std::optional<BodyLoads> computed =
-        evaluate_row(body, water_of(source, scene, water), scene.current(), source.state, source.lead_time,
-                     row.condition.get())
+        evaluate_state(body, water_of(source, scene, water), scene.current(), source.state, source.lead_time,
+                       row.condition.get())
             .loads;
     if (!computed) continue;
     run.loads.back() = to_row(*computed);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/state_evaluation.h"
 #include "messages/conversions.h"
 #include "view/common/scene_model.h"
 #include "view/common/sea_json.h"
@@ -217,8 +218,8 @@ std::shared_ptr<RowLoads> RunBuilder::add(const RecordedState& recorded) {
   const std::shared_ptr<const BodyCondition> condition = conditions_.at(*index, recorded.utime);
   BodyWrench wrench =
       recorded.wrench ? *recorded.wrench
-                      : evaluate_row(body, water_.move_to(recorded.utime, recorded.lead_time).water,
-                                     scene_.current(), recorded.state, recorded.lead_time, condition.get())
+                      : evaluate_state(body, water_.move_to(recorded.utime, recorded.lead_time).water,
+                                       scene_.current(), recorded.state, recorded.lead_time, condition.get())
                             .wrench;
   if (recorded.force_torque) {
     wrench.force = recorded.force_torque->force;
