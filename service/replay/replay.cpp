@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -28,7 +29,15 @@ struct Received {
   SeaTimeline seas;
   ConditionTimeline conditions;
   MotionMonitor motion{};
+  bool has_begun = false;
 };
+
+// Returns whether a request may tell something about the velocities that the input states: after the first
+// one, not if it has none and the scene uses none.
+bool tells_motion(const ReplayTask& task, Received& received) {
+  return !std::exchange(received.has_begun, true) || task.input.states_velocities() ||
+         task.scene.bodies_with_hydrodynamics() > 0;
+}
 
 bool is_in_pose_session(const PoseRequestAdapter& poses, Bytes request) {
   if (poses.channels().empty()) return false;
@@ -55,7 +64,7 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, Received& rec
   }
   if (role.request) {
     batch.add_request(event.timestamp, event.bytes, {});
-    received.motion.add(event.bytes, task.scene);
+    if (tells_motion(task, received)) received.motion.add(event.bytes, task.scene);
     if (!event.channel.empty()) {
       if (const auto id = peek_request_id(event.bytes)) summary.requests->add(id->session_id, id->seq);
     }

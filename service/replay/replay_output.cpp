@@ -4,7 +4,6 @@
 #include <span>
 
 #include "engine/pose_request_adapter.h"
-#include "messages/body_csv.h"
 #include "recording/event_log.h"
 
 namespace buoyancy::service {
@@ -22,12 +21,8 @@ void Records::clear() {
 }
 
 void Records::append(Bytes record) {
-  bytes_.insert(bytes_.end(), record.begin(), record.end());
+  bytes_.append(reinterpret_cast<const char*>(record.data()), record.size());
   ends_.push_back(bytes_.size());
-}
-
-void Records::append(std::string_view row) {
-  append(bytes_of(row));
 }
 
 void OutputRecords::add_event(std::int64_t timestamp, std::string_view channel, Bytes bytes) {
@@ -51,20 +46,14 @@ void OutputRecords::add_response(std::int64_t timestamp, const ResponseBytes& pu
   }
   [[maybe_unused]] const auto rejected = decode(response, response_);
   assert(!rejected);  // the handler encoded it
-  for (const BodyWrench& wrench : response_.bodies) {
-    set_csv_row(response_.id.utime, wrench, row_);
-    append(row_);
-  }
+  for (const BodyWrench& wrench : response_.bodies) append_row(response_.id.utime, wrench);
 }
 
 void LoadsRecords::add(Bytes loads) {
   if (loads.empty()) return;
   [[maybe_unused]] const auto rejected = decode(loads, loads_);
   assert(!rejected);  // the handler encoded it
-  for (const BodyLoads& body : loads_.bodies) {
-    set_csv_row(loads_.id.utime, body, row_);
-    append(row_);
-  }
+  for (const BodyLoads& body : loads_.bodies) append_row(loads_.id.utime, body);
 }
 
 Expected<ReplayOutput> ReplayOutput::create(const std::filesystem::path& path, FileFormat format) {
@@ -107,7 +96,7 @@ Expected<void> ReplayOutput::write_csv_header(std::string_view columns) {
 }
 
 Expected<void> ReplayOutput::write(Records& records) {
-  const std::span<std::uint8_t> bytes(records.bytes_);
+  const std::span bytes(reinterpret_cast<std::uint8_t*>(records.bytes_.data()), records.bytes_.size());
   std::size_t start = 0;
   for (const std::size_t end : records.ends_) {
     const std::span<std::uint8_t> record = bytes.subspan(start, end - start);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "messages/body_csv.h"
 #include "messages/loads.h"
 #include "messages/request.h"
 #include "messages/wire.h"
@@ -38,12 +39,17 @@ class Records {
  public:
   void clear();
   void append(Bytes record);
-  void append(std::string_view row);
+  // Appends the row of a body.
+  template <typename Body>
+  void append_row(std::int64_t utime, const Body& body) {
+    append_csv_row(utime, body, bytes_);
+    ends_.push_back(bytes_.size());
+  }
 
  private:
   friend class ReplayOutput;
 
-  std::vector<std::uint8_t> bytes_;
+  std::string bytes_;
   std::vector<std::size_t> ends_;  // end of each record in bytes_
 };
 
@@ -64,7 +70,6 @@ class OutputRecords : public Records {
   std::vector<std::uint8_t> event_;    // reused
   std::vector<std::uint8_t> message_;  // reused
   WrenchResponse response_;            // reused
-  std::string row_;                    // reused
 };
 
 // The rows of a CSV file of loads.
@@ -74,7 +79,6 @@ class LoadsRecords : public Records {
 
  private:
   BodiesLoads loads_;  // reused
-  std::string row_;    // reused
 };
 
 class ReplayOutput {

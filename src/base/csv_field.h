@@ -1,4 +1,5 @@
-// Splits CSV lines and command-line arguments into fields, parses numbers and quotes text for messages.
+// Splits CSV lines and command-line arguments into fields, parses and writes numbers, and quotes text for
+// messages.
 #pragma once
 
 #include <charconv>
@@ -14,7 +15,12 @@ namespace buoyancy {
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some programs begin text files with it
 
 // Removes spaces, tabs and carriage returns at both ends.
-std::string_view trim(std::string_view text);
+inline std::string_view trim(std::string_view text) {
+  const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
 
 // Iterates over the fields of a line, trimmed. Each line has at least one.
 class CsvFields {
@@ -43,6 +49,11 @@ bool parse_number(std::string_view text, Number& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc{} && end == text.data() + text.size();
 }
+
+// Writes a number with 17 significant digits, as std::to_chars() does in its general format: at most
+// kMaxNumberLength characters. Returns their end. Numbers from 2e-11 to 1e17 take a third of its time.
+inline constexpr std::size_t kMaxNumberLength = 24;  // -1.2345678901234567e-308
+char* write_number(double value, char* to);
 
 inline bool parse_finite(std::string_view text, double& value) {
   return parse_number(text, value) && std::isfinite(value);

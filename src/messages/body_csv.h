@@ -12,6 +12,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "base/csv_field.h"
 #include "messages/wire_layout.h"
 
 namespace buoyancy {
@@ -94,35 +95,42 @@ std::string csv_header(const FieldRange& range = kAllFields) {
   return "utime," + csv_columns<Body>(range);
 }
 
+// Writes a comma and the number, and returns their end.
+inline char* write_csv(double value, char* to) {
+  *to++ = ',';
+  return write_number(value, to);
+}
+inline char* write_csv(std::int32_t value, char* to) {
+  *to++ = ',';
+  return std::to_chars(to, to + kMaxNumberLength, value).ptr;
+}
+inline char* write_csv(BodyStatus status, char* to) {
+  return write_csv(static_cast<std::int32_t>(status), to);
+}
+
 // Appends a comma and the number.
 inline void append_csv(double value, std::string& row) {
-  constexpr int kSignificantDigits = 17;
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general,
-                                 kSignificantDigits);
-  row += ',';
-  row.append(text.data(), end.ptr);
-}
-inline void append_csv(std::int32_t value, std::string& row) {
-  row += ',';
-  row += std::to_string(value);
-}
-inline void append_csv(BodyStatus status, std::string& row) {
-  append_csv(static_cast<std::int32_t>(status), row);
+  std::array<char, kMaxNumberLength + 1> text;
+  row.append(text.data(), write_csv(value, text.data()));
 }
 
 // Appends a comma and the number for each column. No heap allocation once the capacity of row suffices.
 template <BodyOfMessage Body>
 void append_csv(const Body& body, std::string& row, const FieldRange& range = kAllFields) {
-  visit_numbers(body, range, [&row](const auto& number) { append_csv(number, row); });
+  constexpr std::size_t kMaxColumns = sizeof(Body) / sizeof(std::int32_t);
+  std::array<char, kMaxColumns*(kMaxNumberLength + 1)> text;
+  char* end = text.data();
+  visit_numbers(body, range, [&end](const auto& number) { end = write_csv(number, end); });
+  row.append(text.data(), end);
 }
 
-// Replaces row by the line of a body below csv_header(), including its newline.
+// Appends the line of a body below csv_header(), including its newline.
 template <BodyOfMessage Body>
-void set_csv_row(std::int64_t utime, const Body& body, std::string& row) {
-  row = std::to_string(utime);
-  append_csv(body, row);
-  row += '\n';
+void append_csv_row(std::int64_t utime, const Body& body, std::string& rows) {
+  std::array<char, kMaxNumberLength> text;
+  rows.append(text.data(), std::to_chars(text.data(), text.data() + text.size(), utime).ptr);
+  append_csv(body, rows);
+  rows += '\n';
 }
 
 }  // namespace buoyancy

@@ -289,7 +289,7 @@ template <typename Body>
 void expect_column_for_every_number() {
   const std::string header = csv_header<Body>();
   std::string row;
-  set_csv_row(0, Body{}, row);
+  append_csv_row(0, Body{}, row);
   EXPECT_EQ(std::ranges::count(header, ','), std::ranges::count(row, ',')) << header;
 }
 
