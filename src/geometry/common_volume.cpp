@@ -17,6 +17,7 @@ namespace buoyancy {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kNegligible = 1e-12;  // of a box's volume and sides: meshes touch, with rounding
 
 BoundingBox box_of(const OffsetMesh& mesh) {
   BoundingBox box = bounding_box(*mesh.mesh);
@@ -223,10 +224,47 @@ ColumnLayout along_longest_side(const BoundingBox& box) {
   return layout;
 }
 
+double volume_of(const BoundingBox& box) {
+  return (box.max_B - box.min_B).prod();
+}
+
+// Returns whether a surface goes through the inside of a box; may return true where it only comes near.
+bool enters(const OffsetMesh& mesh, const BoundingBox& box) {
+  const Vec3 center = 0.5 * (box.min_B + box.max_B);
+  const Vec3 half = 0.5 * (1.0 - kNegligible) * (box.max_B - box.min_B);
+  return std::ranges::any_of(mesh.mesh->triangles, [&](const Triangle& triangle) {
+    const Vec3 a = mesh.mesh->vertex(triangle[0]) + mesh.offset_B - center;
+    const Vec3 b = mesh.mesh->vertex(triangle[1]) + mesh.offset_B - center;
+    const Vec3 c = mesh.mesh->vertex(triangle[2]) + mesh.offset_B - center;
+    if ((a.cwiseMin(b).cwiseMin(c).array() >= half.array()).any()) return false;
+    if ((a.cwiseMax(b).cwiseMax(c).array() <= -half.array()).any()) return false;
+    const Vec3 normal = (b - a).cross(c - a);
+    return std::abs(normal.dot(a)) < normal.cwiseAbs().dot(half);
+  });
+}
+
+// Returns whether a box lies inside a surface, for which the surface may touch it.
+bool encloses(const OffsetMesh& outer, const BoundingBox& box) {
+  if (enters(outer, box)) return false;
+  ColumnLayout one = along_longest_side(box);
+  one.count = 1;
+  Columns column(box, {}, one);
+  column.add(outer, true);
+  const double middle = 0.5 * (box.min_B[one.along] + box.max_B[one.along]);
+  int winding = 0;
+  for (const Crossing& crossing : column.crossings()) {
+    if (crossing.height < middle) winding += crossing.first;
+  }
+  return winding > 0;
+}
+
 }  // namespace
 
 double common_volume(const OffsetMesh& a, const OffsetMesh& b) {
-  const BoundingBox box = common_box(box_of(a), box_of(b));
+  const BoundingBox box_a = box_of(a);
+  const BoundingBox box_b = box_of(b);
+  const BoundingBox box = common_box(box_a, box_b);
+  if (volume_of(box) <= kNegligible * std::min(volume_of(box_a), volume_of(box_b))) return 0.0;
   return volume_where(box, a, b, along_longest_side(box),
                       [](int in_a, int in_b) { return in_a > 0 && in_b > 0; })
       .volume;
@@ -234,6 +272,7 @@ double common_volume(const OffsetMesh& a, const OffsetMesh& b) {
 
 double volume_outside(const OffsetMesh& inner, const OffsetMesh& outer) {
   const BoundingBox box = box_of(inner);
+  if (encloses(outer, box)) return 0.0;
   return volume_where(box, inner, outer, along_longest_side(box),
                       [](int in_inner, int in_outer) { return in_inner > 0 && in_outer <= 0; })
       .volume;

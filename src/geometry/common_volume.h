@@ -22,10 +22,11 @@ struct OffsetMesh {
 };
 
 // Returns the volume inside both [m^3]. Complexity: O(triangles + 256^2 columns and their crossings), some 20
-// ms; O(vertices) for meshes whose bounding boxes have nothing in common.
+// ms; O(vertices) for meshes whose bounding boxes have nothing in common, or at most touch.
 double common_volume(const OffsetMesh& a, const OffsetMesh& b);
 
-// Returns the volume inside `inner` and outside `outer` [m^3]. Complexity: as common_volume().
+// Returns the volume inside `inner` and outside `outer` [m^3]. Complexity: as common_volume();
+// O(vertices) where `outer` does not enter the bounding box of `inner`, or at most touches it.
 double volume_outside(const OffsetMesh& inner, const OffsetMesh& outer);
 
 // Returns the volume [m^3] that the integrals over a closed mesh count more than once, because its parts

@@ -65,6 +65,23 @@ TEST(CommonVolume, IsThatOfWhateverIsInside) {
   }
 }
 
+// The inside of a surface that does not enter the box of the other, and what only looks like it.
+TEST(CommonVolume, TellsInsideFromOutsideWhereSurfacesDoNotMeet) {
+  const TriangleMesh small = box_mesh(Vec3::Constant(-0.1), Vec3::Constant(0.1));
+  const TriangleMesh large = box_mesh(Vec3::Constant(-1.0), Vec3::Constant(1.0));
+  const TriangleMesh hollow = joined(large, inside_out(box_mesh(Vec3::Constant(-0.5), Vec3::Constant(0.5))));
+  EXPECT_EQ(outside(small, large), 0.0);
+  EXPECT_EQ(outside(small, large, {-0.9, 0.0, 0.0}), 0.0) << "they touch";
+  EXPECT_NEAR(outside(small, hollow), 0.008, 1e-12);
+  EXPECT_EQ(outside(small, hollow, {0.75, 0.1, 0.0}), 0.0);
+  EXPECT_NEAR(outside(small, hollow, {0.5, 0.0, 0.0}), 0.004, 1e-12);
+  EXPECT_NEAR(outside(small, inside_out(large)), 0.008, 1e-12);
+  // A face at a slant, whose box meets that of the other mesh.
+  const TriangleMesh slanted = turned(large, Eigen::Quaterniond(2.0, 0.0, 0.0, 1.0).normalized());
+  EXPECT_EQ(outside(small, slanted, {-0.6, 0.5, 0.0}), 0.0);
+  EXPECT_NEAR(outside(small, slanted, {-1.05, -1.05, 0.0}), 0.008, 1e-12);
+}
+
 // The same surface in other triangles, turned so that no face lies along a column.
 TEST(CommonVolume, FindsNothingOutsideTheSameSurface) {
   RandomPoses random(92);
