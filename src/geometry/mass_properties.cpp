@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/pairwise_sum.h"
+#include "geometry/pairwise_total.h"
 
 namespace buoyancy {
 namespace {
@@ -39,12 +39,11 @@ MassProperties mass_properties(const TriangleMesh& mesh) {
   MassProperties properties;
   if (mesh.triangles.empty()) return properties;
   const Vec3 center_B = bounding_box(mesh).center();
-  PairwiseSum<SolidMoments> sum;
-  for (const Triangle& triangle : mesh.triangles) {
-    sum.add(moments_of_tetrahedron(mesh.vertex(triangle[0]) - center_B, mesh.vertex(triangle[1]) - center_B,
-                                   mesh.vertex(triangle[2]) - center_B));
-  }
-  const SolidMoments total = sum.total();
+  const auto total = pairwise_total<SolidMoments>(mesh.triangles.size(), [&](std::size_t i) {
+    const Triangle& triangle = mesh.triangles[i];
+    return moments_of_tetrahedron(mesh.vertex(triangle[0]) - center_B, mesh.vertex(triangle[1]) - center_B,
+                                  mesh.vertex(triangle[2]) - center_B);
+  });
 
   properties.volume = total.volume;
   properties.centroid_B = center_B;

@@ -12,7 +12,7 @@
 #include "geometry/mesh_orientation.h"
 #include "geometry/mesh_repair.h"
 #include "geometry/mesh_topology.h"
-#include "geometry/pairwise_sum.h"
+#include "geometry/pairwise_total.h"
 #include "geometry/self_intersection.h"
 #include "geometry/surface_moments.h"
 
@@ -52,17 +52,16 @@ void report_surface(const TriangleMesh& mesh, MeshReport& report) {
   report.box = bounding_box(mesh);
   report.diagonal = report.box.diagonal();
   const Vec3 center_B = report.box.center();
-  PairwiseSum<SurfaceTotals> sum;
-  for (const Triangle& face : mesh.triangles) {
+  const auto total = pairwise_total<SurfaceTotals>(mesh.triangles.size(), [&](std::size_t i) {
+    const Triangle& face = mesh.triangles[i];
     SurfaceTotals totals;
     totals.moments = moments_of_triangle<double>(
         mesh.vertex(face[0]) - center_B, mesh.vertex(face[1]) - center_B, mesh.vertex(face[2]) - center_B);
     totals.area = totals.moments.S.norm();
     totals.degenerate_faces =
         collinear(mesh.vertex(face[0]), mesh.vertex(face[1]), mesh.vertex(face[2])) ? 1 : 0;
-    sum.add(totals);
-  }
-  const SurfaceTotals total = sum.total();
+    return totals;
+  });
   report.area = total.area;
   report.area_vector = total.moments.S;
   report.volume_by_axis = total.moments.N.diagonal();
@@ -159,7 +158,7 @@ MeshValidation validate_mesh(const ImportedMesh& imported, const std::string& na
     double volume = 0.0;
     if (holes.empty()) {
       if (!orient_closed(mesh, topology, components)) validation.refusal = too_many_overlaps(report);
-      report_surface(mesh, report);
+      if (std::ranges::any_of(components, &ComponentReport::flipped)) report_surface(mesh, report);
       volume = report.volume;
     } else {
       volume = orient_open(mesh, holes, components);

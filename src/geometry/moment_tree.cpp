@@ -90,21 +90,28 @@ std::size_t left_share(std::size_t size, std::size_t unit) {
 }
 
 // The distinct vertices of some triangles.
-struct LeafVertices {
-  std::array<std::int32_t, kLeafVertices> index;
-  std::size_t count = 0;
+class LeafVertices {
+ public:
+  LeafVertices() { index_.fill(kNone); }
 
-  std::size_t find(std::int32_t vertex) const {
-    return static_cast<std::size_t>(
-        std::find(index.begin(), index.begin() + static_cast<std::ptrdiff_t>(count), vertex) - index.begin());
+  std::size_t count() const { return count_; }
+  std::int32_t operator[](std::size_t i) const { return index_[i]; }
+  // Adds a vertex, unless it is among them. Returns its place, or kLeafVertices if there is no room.
+  std::size_t add(std::int32_t vertex) {
+    std::int32_t place_from_one = 0;  // all places are compared, since vectors do so in a few instructions
+    for (std::int32_t i = 0; i < kLeafVertices; ++i) {
+      place_from_one |= index_[static_cast<std::size_t>(i)] == vertex ? i + 1 : 0;
+    }
+    if (place_from_one > 0) return static_cast<std::size_t>(place_from_one - 1);
+    if (count_ == kLeafVertices) return kLeafVertices;
+    index_[count_] = vertex;
+    return count_++;
   }
-  // Returns false if there is no room.
-  bool add(std::int32_t vertex) {
-    if (find(vertex) < count) return true;
-    if (count == kLeafVertices) return false;
-    index[count++] = vertex;
-    return true;
-  }
+
+ private:
+  static constexpr std::int32_t kNone = -1;
+  std::array<std::int32_t, kLeafVertices> index_;
+  std::size_t count_ = 0;
 };
 
 constexpr std::size_t kRun = std::size_t{8} * kLeafTriangles;
@@ -214,7 +221,7 @@ class LeafCutter {
     const auto max = std::min<std::ptrdiff_t>(last - first, kLeafTriangles);
     for (std::ptrdiff_t i = 0; i < max; ++i) {
       for (const std::int32_t vertex : surface_.triangles[first[i].index]) {
-        if (!vertices.add(vertex)) return static_cast<std::size_t>(i);
+        if (vertices.add(vertex) == kLeafVertices) return static_cast<std::size_t>(i);
       }
     }
     return static_cast<std::size_t>(max);
@@ -226,11 +233,11 @@ class LeafCutter {
     LeafVertices vertices;
     for (std::size_t i = range.begin; i < range.end; ++i) {
       for (const std::int32_t vertex : surface_.triangles[items_[i].index]) {
-        if (!vertices.add(vertex)) return false;
+        if (vertices.add(vertex) == kLeafVertices) return false;
       }
     }
     Bounds bounds;
-    for (std::size_t v = 0; v < vertices.count; ++v) bounds.include(surface_.vertex(vertices.index[v]));
+    for (std::size_t v = 0; v < vertices.count(); ++v) bounds.include(surface_.vertex(vertices[v]));
     width_ += bounds.width();
     leaves_.push_back(range);
     return true;
@@ -333,17 +340,19 @@ class Builder {
   }
 
   void cut_leaves() {
-    std::vector<Range> tasks;
-    const auto split_into_tasks = [&](const auto& self, const Range& range) -> void {
-      if (range.size() <= kTask) {
-        tasks.push_back(range);
-        return;
-      }
-      const auto [left, right] = split(items_, range, left_share(range.size(), kRun));
-      self(self, left);
-      self(self, right);
-    };
-    split_into_tasks(split_into_tasks, {0, items_.size()});
+    std::vector<Range> tasks{{0, items_.size()}};
+    while (std::ranges::any_of(tasks, [](const Range& range) { return range.size() > kTask; })) {
+      std::vector<Range> halves(2 * tasks.size());
+      run_parallel_tasks(tasks.size(), threads_, [&](std::size_t task) {
+        const Range& range = tasks[task];
+        const auto [left, right] = range.size() > kTask ? split(items_, range, left_share(range.size(), kRun))
+                                                        : halves_at(range, range.size());
+        halves[2 * task] = left;
+        halves[2 * task + 1] = right;
+      });
+      std::erase_if(halves, [](const Range& range) { return range.size() == 0; });
+      tasks = std::move(halves);
+    }
     std::vector<std::vector<Range>> leaves(tasks.size());
     run_parallel_tasks(tasks.size(), threads_, [&](std::size_t task) {
       LeafCutter(surface_, items_).cut(tasks[task], leaves[task]);
@@ -445,16 +454,22 @@ class Builder {
   bool fill_leaf(const LeafPlace& place, TreeLeaf<Real>& leaf) {
     const Range& range = leaves_[place.range];
     LeafVertices vertices;
+    leaf.corners = {};
     for (std::size_t i = range.begin; i < range.end; ++i) {
-      for (const std::int32_t vertex : surface_.triangles[items_[i].index]) vertices.add(vertex);
+      const Triangle& triangle = surface_.triangles[items_[i].index];
+      std::size_t word = 0;
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        word |= vertices.add(triangle[corner]) << (corner * LeafCorners::kBits);
+      }
+      leaf.corners[i - range.begin].word = static_cast<std::uint16_t>(word);
     }
     Subtree& subtree = subtrees_[place.child];
     subtree = {};
-    for (std::size_t v = 0; v < vertices.count; ++v) {
-      subtree.bounds.include(surface_.vertex(vertices.index[v]));
+    for (std::size_t v = 0; v < vertices.count(); ++v) {
+      subtree.bounds.include(surface_.vertex(vertices[v]));
     }
     leaf.moments = place.child;
-    leaf.vertices = static_cast<std::uint8_t>(vertices.count);
+    leaf.vertices = static_cast<std::uint8_t>(vertices.count());
     leaf.triangles = static_cast<std::uint8_t>(range.size());
     const Vec3 center = subtree.bounds.center();
     for (int axis = 0; axis < 3; ++axis) {
@@ -464,14 +479,8 @@ class Builder {
     }
 
     double rounding = 0.0;  // [m^3]
-    leaf.corners = {};
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const Triangle& triangle = surface_.triangles[items_[i].index];
-      const auto local = [&](int corner) {
-        return vertices.find(triangle[static_cast<std::size_t>(corner)]);
-      };
-      leaf.corners[i - range.begin].word = static_cast<std::uint16_t>(
-          local(0) | local(1) << LeafCorners::kBits | local(2) << (2 * LeafCorners::kBits));
       const auto moments = moments_of_triangle<double>(
           surface_.vertex(triangle[0]), surface_.vertex(triangle[1]), surface_.vertex(triangle[2]));
       subtree.moments += moments;
@@ -496,8 +505,7 @@ class Builder {
     if (!(std::abs(steps) <= 0x1p23)) return false;
     leaf.center[n] = static_cast<std::int32_t>(steps);
     for (std::size_t i = 0; i < kLeafVertices; ++i) {
-      const double at =
-          surface_.vertex(vertices.index[i < vertices.count ? i : 0])[axis] - steps * tree_.grid;
+      const double at = surface_.vertex(vertices[i < vertices.count() ? i : 0])[axis] - steps * tree_.grid;
       leaf.y[n][i] = static_cast<Real>(at);
       if (static_cast<double>(leaf.y[n][i]) != at) return false;
     }

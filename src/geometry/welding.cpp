@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/large_page_array.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/mesh_topology.h"
 #include "geometry/swept_volume.h"
@@ -43,13 +44,30 @@ std::uint64_t mix(std::uint64_t bits) {
 // Returns the first vertex at each vertex's position, by an open-addressing hash table of vertex indices.
 std::vector<std::int32_t> first_at_same_position(const TriangleMesh& mesh) {
   constexpr std::int32_t kEmpty = -1;
+  constexpr std::size_t kAhead = 32;  // vertices: their slots, and then what these name, arrive meanwhile
   const std::size_t n = mesh.vertex_count();
   const std::size_t mask = std::bit_ceil(2 * n + 1) - 1;
-  std::vector<std::int32_t> slots(mask + 1, kEmpty);
+  LargePageArray<std::int32_t> slots(mask + 1, kEmpty);
   std::vector<std::int32_t> first(n);
-  for (std::size_t v = 0; v < n; ++v) {
+  std::array<std::size_t, 2 * kAhead> ahead{};  // the first slot of a vertex, by its number modulo the size
+  const auto prefetch_slot = [&](std::size_t v) {
     const auto bits = position_bits(mesh, v);
-    std::size_t slot = mix(mix(mix(bits[0]) + bits[1]) + bits[2]) & mask;
+    std::size_t& slot = ahead[v % ahead.size()];
+    slot = mix(mix(mix(bits[0]) + bits[1]) + bits[2]) & mask;
+    __builtin_prefetch(&slots[slot]);
+  };
+  const auto prefetch_vertex_in_slot = [&](std::size_t v) {
+    const std::int32_t known = slots[ahead[v % ahead.size()]];
+    if (known == kEmpty) return;
+    const auto at = static_cast<std::size_t>(known);
+    for (const auto* coordinates : {&mesh.x, &mesh.y, &mesh.z}) __builtin_prefetch(&(*coordinates)[at]);
+  };
+  for (std::size_t v = 0; v < std::min(n, 2 * kAhead - 1); ++v) prefetch_slot(v);
+  for (std::size_t v = 0; v < n; ++v) {
+    if (v + 2 * kAhead - 1 < n) prefetch_slot(v + 2 * kAhead - 1);
+    if (v + kAhead < n) prefetch_vertex_in_slot(v + kAhead);
+    const auto bits = position_bits(mesh, v);
+    std::size_t slot = ahead[v % ahead.size()];
     while (slots[slot] != kEmpty && position_bits(mesh, static_cast<std::size_t>(slots[slot])) != bits) {
       slot = (slot + 1) & mask;
     }

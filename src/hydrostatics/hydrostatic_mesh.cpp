@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/double_double.h"
-#include "geometry/pairwise_sum.h"
+#include "geometry/pairwise_total.h"
 #include "hydrostatics/volume_elements.h"
 
 namespace buoyancy {
@@ -144,8 +144,8 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree w
   for (const Triangle& triangle : source.triangles)
     mesh.surface.triangles.push_back(starting_opposite_longest_edge(triangle, mesh.surface));
 
-  PairwiseSum<Totals> sum;
-  for (const Triangle& triangle : mesh.surface.triangles) {
+  const auto totals = pairwise_total<Totals>(mesh.surface.triangles.size(), [&mesh](std::size_t i) {
+    const Triangle& triangle = mesh.surface.triangles[i];
     const Point<double> a = mesh.point(triangle[0]);
     const Point<double> b = mesh.point(triangle[1]);
     const Point<double> c = mesh.point(triangle[2]);
@@ -153,9 +153,8 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree w
     term.elements.add(a, b, c, {0, 0, 0});
     term.twice_area = cross(b - a, c - a).vec3().norm();
     term.twice_rounding_area = std::max(term.twice_area, (b - a).vec3().norm() * (c - a).vec3().norm());
-    sum.add(term);
-  }
-  const Totals totals = sum.total();
+    return term;
+  });
   mesh.area = 0.5 * totals.twice_area;
   mesh.rounding_area = 0.5 * totals.twice_rounding_area;
   mesh.volume = totals.elements.volume();
