@@ -13,12 +13,14 @@ set(programs "${CPACK_TEMPORARY_DIRECTORY}/programs")
 
 file(MAKE_DIRECTORY "${programs}/etc/buoyancy")
 file(COPY "${packaging}/scene.toml" DESTINATION "${programs}/etc/buoyancy")
-# Units are below the prefix in a manual installation, but below the root in a package.
-if(EXISTS "${programs}/usr/lib/systemd")
+# Units are below the prefix in a manual installation and in packages from Debian 13 on, but below the root in those of
+# Debian 12.
+file(STRINGS /etc/os-release debian_12 REGEX "^VERSION_ID=\"?12\"?$")
+if(debian_12 AND EXISTS "${programs}/usr/lib/systemd")
   file(MAKE_DIRECTORY "${programs}/lib")
   file(RENAME "${programs}/usr/lib/systemd" "${programs}/lib/systemd")
 endif()
-file(GLOB units "${programs}/lib/systemd/system/*.service")
+file(GLOB units "${programs}/lib/systemd/system/*.service" "${programs}/usr/lib/systemd/system/*.service")
 foreach(unit IN LISTS units)
   file(STRINGS "${unit}" commands REGEX "^Exec[A-Za-z]*=")
   foreach(command IN LISTS commands)
