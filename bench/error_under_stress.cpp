@@ -9,13 +9,13 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "geometry/shapes.h"
 #include "hydrostatics/buoyancy.h"
 #include "hydrostatics/triangle_clip.h"
+#include "tests/hydrostatics/random_poses.h"
 #include "tests/truth/ball.h"
 #include "tests/truth/exact_oracle.h"
 #include "tests/truth/rational.h"
@@ -95,13 +95,9 @@ void print_rows(const std::string& sweep, double x, const TriangleMesh& source,
 
 // Random rotations, the same ones in every sweep.
 std::vector<Eigen::Quaterniond> rotations(int count) {
-  std::mt19937_64 generator(1);
-  std::normal_distribution<double> normal;
+  RandomPoses random(1);
   std::vector<Eigen::Quaterniond> result;
-  for (int i = 0; i < count; ++i) {
-    result.emplace_back(normal(generator), normal(generator), normal(generator), normal(generator));
-    result.back().normalize();
-  }
+  for (int i = 0; i < count; ++i) result.push_back(random.rotation());
   return result;
 }
 

@@ -36,10 +36,10 @@ struct Motion {
 
   explicit Motion(RandomPoses& random)
       : start(100.0 * random.direction()),
-        velocity(random.uniform(0.5, 3.0) * random.direction()),
-        swing(random.uniform(0.1, 0.5) * random.direction()),
-        angular_velocity(random.uniform(0.5, 3.0) * random.direction()),
-        q_WB(Eigen::AngleAxisd(random.uniform(1.0, 3.0), random.direction())) {}
+        velocity(random.vector(0.5, 3.0)),
+        swing(random.vector(0.1, 0.5)),
+        angular_velocity(random.vector(0.5, 3.0)),
+        q_WB(Eigen::AngleAxisd{random.uniform(1.0, 3.0), random.direction()}) {}
 
   BodyState at(double t) const {
     const Eigen::Quaterniond q =

@@ -230,7 +230,7 @@ TEST(Tank, BoundsTheErrorOfAVolumeGivenAsAShare) {
   double reached = 0.0;
   for (int i = 0; i < 200; ++i) {
     const double thickness = std::pow(10.0, 3.0 * uniform(random));
-    const Vec3 position(9.0 * uniform(random), 9.0 * uniform(random), 9.0 * uniform(random));
+    const Vec3 position{9.0 * uniform(random), 9.0 * uniform(random), 9.0 * uniform(random)};
     const Scene scene =
         scene_of(kWater + body(1, "[40, 40, 40]") + "[[body.tank]]\ndensity = 1000.0\nfill = 0.5\n" +
                  box("[1, 1, " + format_shortest(thickness) + "]", "[" + format_vector(position) + "]") +

@@ -163,7 +163,7 @@ class RandomBallast : public Test {
   double uniform(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
-  Vec3 vector(double length) { return length * Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)); }
+  Vec3 vector(double length) { return length * Vec3{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}; }
 
   HydrostaticMesh hull(int n) {
     const double size = std::pow(10.0, uniform(-1.0, 2.0));
@@ -210,7 +210,8 @@ TEST_F(RandomBallast, GivesTheTargetOrARightRefusal) {
     SCOPED_TRACE(n);
     const HydrostaticMesh mesh = hull(n);
     const double length = mesh.diagonal;
-    const FloatingBody body = body_of(mesh, uniform(0.05, 0.5), mesh.center_B + vector(0.1 * length));
+    const Vec3 center_of_mass_B = mesh.center_B + vector(0.1 * length);
+    const FloatingBody body = body_of(mesh, uniform(0.05, 0.5), center_of_mass_B);
     BallastTask task{.target = {uniform(-1.0, 1.0), uniform(-1.0, 1.0)},
                      .mass = uniform(0.02, 0.75) * kWater.density * mesh.volume};
     const Vec3 up = up_at(task.axes, task.target);

@@ -167,7 +167,7 @@ TEST(SubmergedRest, HasNoneWhereNothingIsKnown) {
 // Hulls of every kind with a flooded compartment and two tanks, in worlds of any up axis, with any ship axes.
 class RandomSubmerged : public Test {
  protected:
-  Vec3 vector(double length) { return random_.uniform(0.0, length) * random_.direction(); }
+  Vec3 vector(double length) { return random_.vector(0.0, length); }
 
   HydrostaticMesh hull(std::uint64_t n) {
     const double size = random_.power_of_ten(-1.0, 2.0);

@@ -55,7 +55,8 @@ TEST(CommonVolume, IsThatOfWhateverIsInside) {
   for (const Shape& shape : {Shape(TorusKnotShape{}), Shape(RockShape{.frequency = 6}), Shape(ConeShape{}),
                              Shape(BoxShape{.size = {1.0, 2.0, 3.0}})}) {
     for (int i = 0; i < 4; ++i) {
-      const TriangleMesh inner = turned(make_shape(shape), random.rotation(), random.direction());
+      const Eigen::Quaterniond turn = random.rotation();
+      const TriangleMesh inner = turned(make_shape(shape), turn, random.direction());
       const double volume = mass_properties(inner).volume;
       EXPECT_NEAR(common(inner, hull), volume, 2e-3 * volume);
       EXPECT_LE(outside(inner, hull), 1e-12);

@@ -28,6 +28,11 @@ class Random {
   double between(double low, double high) {
     return low + (high - low) * static_cast<double>(engine_() >> 11U) * 0x1p-53;
   }
+  Vec3 vector(double low, double high) {
+    Vec3 v;
+    for (const int i : {2, 1, 0}) v[i] = between(low, high);
+    return v;
+  }
 
  private:
   std::mt19937_64 engine_;
@@ -58,9 +63,10 @@ TriangleMesh star_shaped(Random& random) {
 // Turns the mesh anywhere, so that its coordinates are no round numbers, or leaves it where it is.
 TriangleMesh placed(TriangleMesh mesh, Random& random) {
   if (random.chance(0.3)) return mesh;
-  const Eigen::Quaterniond turn(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1),
-                                random.between(0.1, 1));
-  const Vec3 shift(random.between(-3, 3), random.between(-3, 3), random.between(-3, 3));
+  const double z = random.between(0.1, 1);
+  const Vec3 wxy = random.vector(-1, 1);
+  const Eigen::Quaterniond turn(wxy[0], wxy[1], wxy[2], z);
+  const Vec3 shift = random.vector(-3, 3);
   return moved_mesh(std::move(mesh), turn.normalized().toRotationMatrix(), shift);
 }
 
@@ -175,8 +181,10 @@ double add_hole(TriangleMesh& mesh, std::size_t f, double leg) {
 
 void add_plate(TriangleMesh& mesh, Random& random, const BoundingBox& box) {
   const Vec3 corner = box.max_B + Vec3::Constant(0.1 + random.between(0.0, 1.0));
-  const Vec3 u(random.between(0.1, 1), random.between(0, 1), 0);
-  const Vec3 v(0, random.between(0.1, 1), random.between(0.1, 1));
+  const double u_y = random.between(0, 1);
+  const Vec3 u(random.between(0.1, 1), u_y, 0);
+  const double v_z = random.between(0.1, 1);
+  const Vec3 v(0, random.between(0.1, 1), v_z);
   const std::int32_t a = mesh.add_vertex(corner);
   const std::int32_t b = mesh.add_vertex(corner + u);
   const std::int32_t c = mesh.add_vertex(corner + v);

@@ -55,7 +55,7 @@ RC_GTEST_PROP(ExactPredicates, Orient3dMatchesRationalArithmetic, ()) {
   const double s = random_coordinate();
   const double t = random_coordinate();
   const Vec3 on_plane = a + s * (b - a) + t * (c - a);  // up to rounding
-  const Vec3 d(nudged(on_plane.x()), nudged(on_plane.y()), nudged(on_plane.z()));
+  const Vec3 d{nudged(on_plane.x()), nudged(on_plane.y()), nudged(on_plane.z())};
   const int expected = rational_orient_3d(a, b, c, d);
   RC_ASSERT(orient_3d(a, b, c, d) == expected);
   RC_ASSERT(orient_3d(b, a, c, d) == -expected);
@@ -64,10 +64,10 @@ RC_GTEST_PROP(ExactPredicates, Orient3dMatchesRationalArithmetic, ()) {
 }
 
 RC_GTEST_PROP(ExactPredicates, Orient2dMatchesRationalArithmetic, ()) {
-  const Eigen::Vector2d a(random_coordinate(), random_coordinate());
-  const Eigen::Vector2d b(random_coordinate(), random_coordinate());
+  const Eigen::Vector2d a{random_coordinate(), random_coordinate()};
+  const Eigen::Vector2d b{random_coordinate(), random_coordinate()};
   const Eigen::Vector2d on_line = a + random_coordinate() * (b - a);
-  const Eigen::Vector2d c(nudged(on_line.x()), nudged(on_line.y()));
+  const Eigen::Vector2d c{nudged(on_line.x()), nudged(on_line.y())};
   const int expected = rational_orient_2d(a, b, c);
   RC_ASSERT(orient_2d(a, b, c) == expected);
   RC_ASSERT(orient_2d(c, b, a) == -expected);

@@ -11,11 +11,12 @@ namespace {
 TEST(RotationBetween, TurnsLeastFromOneDirectionToOther) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
+  const auto vector = [&] { return Vec3{normal(random), normal(random), normal(random)}; };
   for (int exponent = 0; exponent <= 17; ++exponent) {
     for (int i = 0; i < 100; ++i) {
       const Vec3 from = vector();
-      const Vec3 to = -std::exp(normal(random)) * from + std::pow(10.0, -exponent) * vector();
+      const Vec3 other = vector();
+      const Vec3 to = -std::exp(normal(random)) * from + std::pow(10.0, -exponent) * other;
       const Eigen::Quaterniond rotation = rotation_between(from, to);
       EXPECT_NEAR(rotation.norm(), 1.0, 1e-9);
       EXPECT_LE((rotation * from.normalized() - to.normalized()).norm(), 2e-9);

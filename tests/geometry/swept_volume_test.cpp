@@ -42,7 +42,7 @@ double largest_share(const Corners& face, double move, RandomPoses& random) {
     for (double step = move; step > 1e-3 * move; step *= 0.97) {
       Corners other = moves;
       for (Vec3& one : other) {
-        one += step * random.uniform(0.0, 1.0) * random.direction();
+        one += step * random.vector(0.0, 1.0);
         if (one.norm() > move) one *= move / one.norm();
       }
       const double now = swept_volume(face, other);

@@ -188,8 +188,9 @@ TEST(Triangulation, KeepsCollinearCorners) {
 
 TEST(Triangulation, SplitsSimplePlanarPolygonsWithoutFolds) {
   std::mt19937 random(1);
-  std::uniform_int_distribution<int> whole(-3, 3);
-  const auto whole_vector = [&] { return Vec3(whole(random), whole(random), whole(random)); };
+  std::uniform_int_distribution<int> range(-3, 3);
+  const auto whole = [&] { return static_cast<double>(range(random)); };
+  const auto whole_vector = [&] { return Vec3{whole(), whole(), whole()}; };
   int tried = 0;
   for (int i = 0; i < 4000; ++i) {
     const Outline outline = random_outline(random, 4 + static_cast<std::size_t>(i) % 20);
@@ -213,10 +214,11 @@ TEST(Triangulation, SplitsSimplePlanarPolygonsWithoutFolds) {
 
 TEST(Triangulation, KeepsAreaVectorOfPolygonsThatCrossThemselves) {
   std::mt19937 random(2);
-  std::uniform_int_distribution<int> whole(0, 5);
+  std::uniform_int_distribution<int> range(0, 5);
+  const auto whole = [&] { return static_cast<double>(range(random)); };
   for (int i = 0; i < 2000; ++i) {
     Places places;
-    for (int corner = 0; corner < 4 + i % 12; ++corner) places.emplace_back(whole(random), whole(random), 2);
+    for (int corner = 0; corner < 4 + i % 12; ++corner) places.push_back({whole(), whole(), 2.0});
     const Result result = split_polygon(places);
     EXPECT_EQ(result.split.non_planar, 0);
     EXPECT_LT((area_vector(result.mesh) - area_vector(places)).norm(), 1e-12);
@@ -408,7 +410,7 @@ Outline large_outline(int kind) {
       outline.emplace_back(0.0, 1.0);
       break;
     default:  // crosses itself everywhere
-      for (int i = 0; i < kCorners; ++i) outline.emplace_back(radius(random), radius(random));
+      for (int i = 0; i < kCorners; ++i) outline.push_back({radius(random), radius(random)});
   }
   return outline;
 }

@@ -32,11 +32,11 @@ Pair rotated(Pair pair, const Eigen::Quaterniond& q, const Vec3& by) {
 
 Pair random_boxes(RandomPoses& random) {
   const auto size = [&] {
-    return Vec3(random.uniform(0.2, 1.2), random.uniform(0.2, 1.2), random.uniform(0.2, 1.2));
+    return Vec3{random.uniform(0.2, 1.2), random.uniform(0.2, 1.2), random.uniform(0.2, 1.2)};
   };
   const Vec3 a = size();
   const Vec3 b = size();
-  const Vec3 offset = random.uniform(0.0, 1.0) * random.direction();
+  const Vec3 offset = random.vector(0.0, 1.0);
   const Vec3 common =
       ((0.5 * a).cwiseMin(offset + 0.5 * b) - (-0.5 * a).cwiseMax(offset - 0.5 * b)).cwiseMax(Vec3::Zero());
   return {box_mesh(-0.5 * a, 0.5 * a), box_mesh(offset - 0.5 * b, offset + 0.5 * b),
@@ -108,7 +108,9 @@ void expect_within_error(std::uint64_t seed, const MakePair& make_pair) {
 
 // A third as they are, since faces along the columns are special.
 Pair mostly_rotated(const Pair& pair, RandomPoses& random) {
-  return random.pick(3) == 0 ? pair : rotated(pair, random.rotation(), random.direction());
+  if (random.pick(3) == 0) return pair;
+  const Eigen::Quaterniond turn = random.rotation();
+  return rotated(pair, turn, random.direction());
 }
 
 TEST(VolumeDifference, IsWithinItsErrorForBoxes) {

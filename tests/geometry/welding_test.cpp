@@ -109,7 +109,7 @@ TEST(Welding, MergesVerticesUpToTheToleranceInEveryDirection) {
   for (int i = 0; i < 200; ++i) {
     const double scale = std::array{1e-3, 1.0, 1e3}.at(random.pick(3));
     const Vec3 corner = 0.1 * scale * random.direction();
-    const Vec3 sides(random.uniform(0.5, 2.0), random.uniform(0.5, 2.0), random.uniform(0.5, 2.0));
+    const Vec3 sides{random.uniform(0.5, 2.0), random.uniform(0.5, 2.0), random.uniform(0.5, 2.0)};
     const TriangleMesh box = box_mesh(corner, corner + scale * sides);
     const double tolerance = 1e-6 * bounding_box(box).diagonal();
     const Vec3 crack = random.direction();

@@ -19,7 +19,8 @@ struct RandomBody {
     body.mass = {0.2 + definite(0, 0), random_vec3(random), definite.topLeftCorner<3, 3>()};
     body.reference_B = random_vec3(random);
     body.motion = {random_rotation(random), random_vec3(random), random_vec3(random)};
-    added_B = 25.0 * (1.0 + random_number(random)) * random_definite(random);
+    added_B = random_definite(random);
+    added_B *= 25.0 * (1.0 + random_number(random));
     body.water.added_mass_W = rotated(added_B, body.motion.R_WB);
     wrench_W = 10.0 * random_vec6(random);
   }

@@ -103,7 +103,8 @@ LoadCase random_load_case(RandomPoses& random, Source source) {
   one.state.motion.velocity_W *= random.power_of_ten(-3.0, 1.0);
   if (source == Source::kRounding) {
     // A body that drifts with a fast current: what counts is a small difference.
-    const Vec3 drift = random.power_of_ten(-4.0, 4.0) * random_vec3(random);
+    const double speed = random.power_of_ten(-4.0, 4.0);
+    const Vec3 drift = speed * random_vec3(random);
     one.state.motion.velocity_W += drift;
     one.state.at_drag.water.velocity_W += drift;
     one.state.at_added_mass.water.velocity_W += drift;
@@ -270,7 +271,7 @@ TEST(HydrodynamicLoad, DragOpposesMotionAlongEachAxis) {
 
 TEST(HydrodynamicLoad, DryBodyHasNone) {
   RandomPoses random(17);
-  const HydrodynamicModel model(random_coefficients(random), random_vec3(random));
+  const HydrodynamicModel model{random_coefficients(random), random_vec3(random)};
   HydrodynamicState state = random_state(random);
   state.at_drag.immersion = state.at_added_mass.immersion = {0.0, 0.0};
   for (const double velocity : {1.0, 5e306}) {

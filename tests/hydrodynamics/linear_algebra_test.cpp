@@ -52,7 +52,9 @@ TEST(LinearSolver, SolvesBadlyScaledSystems) {
   for (int i = 0; i < 1000; ++i) {
     Vec6 scale;
     for (Eigen::Index k = 0; k < 6; ++k) scale[k] = std::pow(10.0, 6.0 * random_number(random));
-    const Mat6 plain = random_definite(random) + random_mat6(random) - random_mat6(random).transpose();
+    const Mat6 definite = random_definite(random);
+    const Mat6 other = random_mat6(random);
+    const Mat6 plain = definite + other - random_mat6(random).transpose();
     const Mat6 matrix = scale.asDiagonal() * plain * scale.asDiagonal();
     const Vec6 expected = scale.cwiseInverse().cwiseProduct(random_vec6(random));
     const Vec6 solution = solve(matrix, Vec6(matrix * expected));

@@ -45,8 +45,8 @@ Mat6 random_definite(Random& random) {
 
 template <typename Random>
 Mat3 random_rotation(Random& random) {
-  const Eigen::Vector4d q(random_number(random), random_number(random), random_number(random),
-                          random_number(random));
+  const Eigen::Vector4d q{random_number(random), random_number(random), random_number(random),
+                          random_number(random)};
   return Eigen::Quaterniond(q.normalized()).toRotationMatrix();
 }
 

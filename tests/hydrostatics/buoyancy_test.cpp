@@ -40,7 +40,7 @@ TEST(Immersion, IsConservativeForGrazingBodies) {
     Water water;
     water.up_W = i % 2 == 0 ? Vec3::UnitZ() : random.direction();
     water.level = random.uniform(-10, 10);
-    Pose pose{std::pow(10.0, random.uniform(-1, 9)) * random.direction(), random.rotation()};
+    Pose pose{random.far_vector(-1, 9), random.rotation()};
     const bool above = i % 4 < 2;
     const Vec3 up_B = pose.q_WB.conjugate() * water.up_W;
     double grazing = above ? 1e300 : -1e300;

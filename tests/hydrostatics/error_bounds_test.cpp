@@ -122,7 +122,7 @@ AtPose random_request(const NamedMesh& named, const HydrostaticMesh& mesh, int t
   at.pose = turn % 4 == 3 ? random.adversarial(named.mesh, at.water)
                           : random.crossing(bounding_box(named.mesh), at.water);
   if (turn % 4 == 2) at.pose.p_WB -= random.uniform(0.1, 30.0) * mesh.diagonal * at.water.up_W;
-  at.reference_B = mesh.center_B + mesh.diagonal * random.power_of_ten(-1.0, 3.0) * random.direction();
+  at.reference_B = mesh.center_B + mesh.diagonal * random.far_vector(-1.0, 3.0);
   return at;
 }
 
@@ -189,8 +189,7 @@ TEST(ErrorBounds, OfSubmergedBodiesAreThoseOfRounding) {
     const Water water{.up_W = Vec3(0.6, 0.0, 0.8), .level = 2.0, .density = 1025.0, .gravity = 9.8};
     RandomPoses random(52);
     for (int i = 0; i < 8; ++i) {
-      const Vec3 reference_B =
-          mesh.center_B + mesh.diagonal * random.power_of_ten(-1.0, 3.0) * random.direction();
+      const Vec3 reference_B = mesh.center_B + mesh.diagonal * random.far_vector(-1.0, 3.0);
       Pose pose{Vec3::Zero(), random.rotation()};
       pose.p_WB = -random.uniform(2.0, 9.0) * mesh.diagonal * water.up_W - pose.q_WB * mesh.center_B;
       const double force = water.density * water.gravity * rounding_of_mesh(mesh);

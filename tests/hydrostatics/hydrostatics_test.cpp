@@ -221,8 +221,9 @@ LiquidSum random_liquid(const HydrostaticMesh& mesh, const Pose& pose, const Wat
   const Vec3 along = std::cos(angle) * u_B + std::sin(angle) * v_B;
   const Vec3 across = std::cos(angle) * v_B - std::sin(angle) * u_B;
   const double scale = 0.02 * water.density * mesh.volume * mesh.diagonal * mesh.diagonal;
-  liquid.free_surface = scale * (random.uniform(0.5, 1.0) * along * along.transpose() +
-                                 random.uniform(0.0, 0.5) * across * across.transpose());
+  const double most = random.uniform(0.5, 1.0);
+  const double least = random.uniform(0.0, 0.5);
+  liquid.free_surface = scale * (most * along * along.transpose() + least * across * across.transpose());
   return liquid;
 }
 

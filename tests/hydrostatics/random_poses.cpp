@@ -50,13 +50,26 @@ double RandomPoses::uniform(double low, double high) {
 
 Eigen::Quaterniond RandomPoses::rotation() {
   std::normal_distribution<double> normal;
-  Eigen::Quaterniond q(normal(generator_), normal(generator_), normal(generator_), normal(generator_));
+  Eigen::Quaterniond q;
+  for (const int i : {2, 1, 0, 3}) q.coeffs()[i] = normal(generator_);  // z, y, x, w
   return q.normalized();
 }
 
 Vec3 RandomPoses::direction() {
   std::normal_distribution<double> normal;
-  return Vec3(normal(generator_), normal(generator_), normal(generator_)).normalized();
+  Vec3 v;
+  for (const int i : {2, 1, 0}) v[i] = normal(generator_);
+  return v.normalized();
+}
+
+Vec3 RandomPoses::vector(double shortest, double longest) {
+  const Vec3 along = direction();
+  return uniform(shortest, longest) * along;
+}
+
+Vec3 RandomPoses::far_vector(double low_exponent, double high_exponent) {
+  const Vec3 along = direction();
+  return power_of_ten(low_exponent, high_exponent) * along;
 }
 
 Pose RandomPoses::crossing(const BoundingBox& box, const Water& water) {
@@ -79,9 +92,12 @@ Pose RandomPoses::adversarial(const TriangleMesh& mesh, const Water& water) {
     case 1:
       pose.q_WB = quarter_turns();
       break;
-    case 2:
-      pose.q_WB = quarter_turns() * Eigen::Quaterniond(1.0, uniform(-1e-9, 1e-9), uniform(-1e-9, 1e-9), 0.0);
+    case 2: {
+      const double about_y = uniform(-1e-9, 1e-9);
+      const Eigen::Quaterniond tilt(1.0, uniform(-1e-9, 1e-9), about_y, 0.0);
+      pose.q_WB = quarter_turns() * tilt;
       break;
+    }
     default:
       pose.q_WB = rotation();
   }

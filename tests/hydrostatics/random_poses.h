@@ -56,6 +56,9 @@ class RandomPoses {
   double sign() { return pick(2) == 0 ? 1.0 : -1.0; }
   Eigen::Quaterniond rotation();
   Vec3 direction();
+  // In any direction, with a length that is uniform, or a power of ten with such an exponent.
+  Vec3 vector(double shortest, double longest);
+  Vec3 far_vector(double low_exponent, double high_exponent);
 
   // Any rotation; the height of the box's centre over the water is uniform in +-0.55 times the diagonal.
   Pose crossing(const BoundingBox& box, const Water& water);

@@ -38,7 +38,7 @@ Worst over_random_poses(const TriangleMesh& source, const HydrostaticMesh& mesh,
     Water water = kUnitWater;
     if (i % 4 == 3) water.up_W = random.direction();
     const Pose pose = i % 5 == 4 ? random.adversarial(source, water) : random.crossing(box, water);
-    const Vec3 reference_B = box.center() + 0.5 * mesh.diagonal * random.uniform(0, 1) * random.direction();
+    const Vec3 reference_B = box.center() + 0.5 * mesh.diagonal * random.vector(0, 1);
     const BuoyancyResult result = buoyancy(within, pose, water, reference_B);
     const BuoyancyResult truth = buoyancy(exactly, pose, water, reference_B);
     if (result.immersion == Immersion::kDry) continue;
@@ -97,7 +97,7 @@ TEST(Tolerance, UsesRoughPlaneOnlyWithinTolerance) {
   for (int i = 0; i < 400; ++i) {
     Water water = kUnitWater;
     water.up_W = random.direction();
-    const Vec3 aside = std::pow(10.0, random.uniform(0, 10)) * random.direction();
+    const Vec3 aside = random.far_vector(0, 10);
     Pose pose{aside - (water.up_W.dot(aside) - random.uniform(-1, 1)) * water.up_W, random.rotation()};
     const BuoyancyResult result = buoyancy(within, pose, water, mesh.center_B);
     const BuoyancyResult truth = buoyancy(exactly, pose, water, mesh.center_B);

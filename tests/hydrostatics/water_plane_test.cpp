@@ -22,15 +22,13 @@ struct FarRequest {
   ExactPlane<Rational> exact;  // about c
 
   FarRequest(RandomPoses& random, double quaternion_norm) {
-    const auto somewhere = [&](double max_exponent) {
-      return Vec3(random.direction() * std::pow(10.0, random.uniform(-3, max_exponent)));
-    };
     water.up_W = random.direction();
-    water.level = random.uniform(-1, 1) * std::pow(10.0, random.uniform(-3, 6));
+    water.level = random.uniform(-1, 1);
+    water.level *= random.power_of_ten(-3, 6);
     pose.q_WB = random.rotation();
     pose.q_WB.coeffs() *= quaternion_norm;
-    pose.p_WB = somewhere(9);
-    c_B = somewhere(6);
+    pose.p_WB = random.far_vector(-3, 9);
+    c_B = random.far_vector(-3, 6);
     exact = exact_plane<Rational>(pose, water, c_B);
   }
 };

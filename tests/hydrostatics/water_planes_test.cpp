@@ -65,10 +65,9 @@ TEST(WaterPlanes, HaveSameBitsOneByOneAndOnEveryTarget) {
     water.level = set % 4 < 2 ? 0.0 : random.uniform(-1e6, 1e6);
     PlaneRequests requests;
     for (int i = 0; i < set; ++i) {  // all sizes, so that the last group has any number of bodies
-      Pose pose{.p_WB = random.direction() * std::pow(10.0, random.uniform(-3.0, 9.0)),
-                .q_WB = random.rotation()};
+      Pose pose{.p_WB = random.far_vector(-3.0, 9.0), .q_WB = random.rotation()};
       pose.q_WB.coeffs() *= i % 3 == 0 ? std::pow(10.0, random.uniform(-100.0, 100.0)) : 1.0;
-      requests.add(pose, random.direction() * std::pow(10.0, random.uniform(-3.0, 6.0)));
+      requests.add(pose, random.far_vector(-3.0, 6.0));
     }
     const std::vector<PlaneBits> expected = bits_one_by_one(requests, water);
     for (const std::string& target : simd_targets()) {

@@ -18,11 +18,6 @@ namespace {
 constexpr double kDensity = 1000.0;  // [kg/m^3], of the water
 constexpr double kMaxStep = 0.1;     // [s]
 
-Vec3 random_vector(RandomPoses& random, double length) {
-  const double factor = random.uniform(0.0, length);
-  return factor * random.direction();
-}
-
 Mat6 random_matrix(RandomPoses& random) {
   Mat6 matrix;
   for (Eigen::Index i = 0; i < 36; ++i) matrix(i / 6, i % 6) = random.uniform(-1.0, 1.0);
@@ -88,7 +83,8 @@ DragDescription random_drag(RandomPoses& random, const Vec6& scale, double rate,
   drag.linear = random_diagonal(random);
   if (random.pick(2) == 0) {
     const Mat6 any = random_matrix(random);
-    drag.linear = random_semidefinite(random) + random.uniform(0.0, 1.0) * (any - any.transpose());
+    drag.linear = random_semidefinite(random);
+    drag.linear += random.uniform(0.0, 1.0) * (any - any.transpose());
   }
   drag.linear = rate * scale.asDiagonal() * drag.linear * scale.asDiagonal();
   if (random.pick(3) > 0) {
@@ -98,11 +94,12 @@ DragDescription random_drag(RandomPoses& random, const Vec6& scale, double rate,
       return rate * scale.asDiagonal() * matrix * per_speed.asDiagonal();
     };
     drag.quadratic = scaled(diagonal);
-    const Mat6 full = scaled(diagonal + random.uniform(0.0, 0.3) * random_matrix(random));
+    const double share = random.uniform(0.0, 0.3);
+    const Mat6 full = scaled(diagonal + share * random_matrix(random));
     const bool resists = !find_drag_fault(full) && !find_driving_twist(full);
     if (random.pick(3) == 0 && resists) drag.quadratic = full;
   }
-  if (random.pick(2) == 0) drag.center_B = random_vector(random, 0.3 * size);
+  if (random.pick(2) == 0) drag.center_B = random.vector(0.0, 0.3 * size);
   drag.immersion = random_scaling(random);
   return drag;
 }
@@ -112,7 +109,7 @@ AddedMassDescription random_added_mass(RandomPoses& random, const Vec6& scale, d
   const Mat6 matrix = random.pick(2) == 0 ? random_semidefinite(random) : random_diagonal(random);
   added.matrix = random.log_uniform(0.1, 50.0) * (scale.asDiagonal() * matrix * scale.asDiagonal());
   added.matrix = (0.5 * (added.matrix + added.matrix.transpose())).eval();
-  if (random.pick(2) == 0) added.center_B = random_vector(random, 0.2 * size);
+  if (random.pick(2) == 0) added.center_B = random.vector(0.0, 0.2 * size);
   added.immersion = random_scaling(random);
   return added;
 }
@@ -158,15 +155,15 @@ MotionCase random_motion_case(std::uint64_t seed, std::int64_t number) {
   body.id = 1;
   body.name = "body";
   body.mesh.source = shape;
-  body.reference_B = random_vector(random, size);
+  body.reference_B = random.vector(0.0, size);
   DynamicsSpec& dynamics = body.dynamics;
   dynamics.given = true;
   dynamics.density = piercing ? kDensity * random.uniform(0.05, 0.95) : kDensity;
   dynamics.position = {0.0, 0.0, piercing ? random.uniform(-0.3, 0.3) * size : -1000.0};
   dynamics.orientation = random.rotation();
   const double speed = random.log_uniform(0.01, piercing ? 1.0 : 5.0);
-  dynamics.linear_velocity = random_vector(random, piercing ? speed * std::sqrt(size) : speed);
-  dynamics.angular_velocity = random_vector(random, random.log_uniform(0.01, piercing ? 1.0 : 5.0));
+  dynamics.linear_velocity = random.vector(0.0, piercing ? speed * std::sqrt(size) : speed);
+  dynamics.angular_velocity = random.vector(0.0, random.log_uniform(0.01, piercing ? 1.0 : 5.0));
 
   // Mass and inertia follow from the mesh.
   body.drag.emplace();

@@ -70,7 +70,8 @@ NamedShape random_shape(RandomPoses& random) {
     }
     default: {
       TriangleMesh parts = rock(random, 0.2);
-      parts = joined(std::move(parts), moved_and_scaled(box(random), 3.0 * random.direction(), 0.8));
+      const TriangleMesh second = box(random);
+      parts = joined(std::move(parts), moved_and_scaled(second, 3.0 * random.direction(), 0.8));
       return {"parts", joined(std::move(parts), moved_and_scaled(tetrahedron(random), {0, 0, 6}, 0.5))};
     }
   }
@@ -143,7 +144,7 @@ RandomMesh drawn(RandomPoses& random) {
   const double scale = random.power_of_ten(-6.0, 6.0);
   Vec3 offset = Vec3::Zero();
   const bool far = random.pick(3) == 0;
-  if (far) offset = scale * random.power_of_ten(0.0, 6.0) * random.direction();
+  if (far) offset = scale * random.far_vector(0.0, 6.0);
   const Eigen::Quaterniond turn = random.pick(2) == 0 ? Eigen::Quaterniond::Identity() : random.rotation();
   const bool single_precision = random.pick(3) == 0;
   stretch(mesh, factors, turn, scale, offset, single_precision);

@@ -21,8 +21,8 @@ Eigen::Quaterniond random_rotation(const TriangleMesh& mesh, const Triangle& fac
       return random.quarter_turns();
     case 1: {
       const double tilt = random.power_of_ten(-17.0, -3.0);
-      return random.quarter_turns() *
-             Eigen::Quaterniond(1.0, tilt * random.sign(), tilt * random.uniform(-1, 1), 0.0);
+      const Eigen::Quaterniond tilted{1.0, tilt * random.sign(), tilt * random.uniform(-1, 1), 0.0};
+      return random.quarter_turns() * tilted;
     }
     case 2: {  // a face lies in the water plane, or nearly so
       const Vec3 normal = normal_of(mesh, face).normalized();
@@ -56,7 +56,7 @@ Vec3 random_target(const TriangleMesh& mesh, const Triangle& face, const Vec3& u
       return farthest - side * random.power_of_ten(-15.0, -1.0) * box.diagonal() * up_B;
     }
     default:
-      return box.center() + random.uniform(-0.6, 0.6) * box.diagonal() * random.direction();
+      return box.center() + box.diagonal() * random.vector(-0.6, 0.6);
   }
 }
 
@@ -80,14 +80,18 @@ SearchPose random_search_pose(const TriangleMesh& mesh, RandomPoses& random) {
 
   Vec3 target_W = Vec3::Zero();  // position of the target point, relative to the water plane at level 0
   if (random.pick(3) == 0) {
-    target_W = size * random.power_of_ten(0.0, 8.0) * random.direction();
+    target_W = size * random.far_vector(0.0, 8.0);
     target_W -= up_W.dot(target_W) * up_W;
   }
   if (random.pick(3) == 0) {
-    requested.water.level = random.sign() * size * random.power_of_ten(-2.0, 6.0);
+    requested.water.level = random.sign() * size;
+    requested.water.level *= random.power_of_ten(-2.0, 6.0);
     target_W += requested.water.level * up_W;
   }
-  if (random.pick(12) == 0) target_W += random.sign() * size * random.power_of_ten(-1.0, 4.0) * up_W;
+  if (random.pick(12) == 0) {
+    const double height = random.sign() * size;
+    target_W += height * random.power_of_ten(-1.0, 4.0) * up_W;
+  }
   requested.pose.p_WB = target_W - q_WB * target_B;
   switch (random.pick(4)) {
     case 0:
@@ -100,10 +104,12 @@ SearchPose random_search_pose(const TriangleMesh& mesh, RandomPoses& random) {
     default:
       break;
   }
-  if (random.pick(4) == 0) requested.pose.q_WB.coeffs() *= random.sign() * random.uniform(0.999, 1.001);
+  if (random.pick(4) == 0) {
+    requested.pose.q_WB.coeffs() *= random.sign();
+    requested.pose.q_WB.coeffs() *= random.uniform(0.999, 1.001);
+  }
   requested.reference_B = bounding_box(mesh).center();
-  if (random.pick(2) == 0)
-    requested.reference_B += size * random.power_of_ten(-1.0, 3.0) * random.direction();
+  if (random.pick(2) == 0) requested.reference_B += size * random.far_vector(-1.0, 3.0);
   if (random.pick(3) == 0) requested.reference_B = Vec3::Zero();
   requested.tolerance = random.power_of_ten(-9.0, -1.0);
   return requested;

@@ -188,8 +188,8 @@ TEST(LogCuts, AreFoundBesideEventsInsideMessages) {
 
 TEST(LogCuts, AreMissedInsideMessageThatHoldsEventsAndExceedsDistance) {
   Random random(1);
-  const std::string log =
-      event("OTHER", 1, random_log(random, Data::kPlain, 20)) + random_log(random, Data::kPlain, 5);
+  std::string log = event("OTHER", 1, random_log(random, Data::kPlain, 20));
+  log += random_log(random, Data::kPlain, 5);
   EXPECT_GT(check_log(log, 7, 100), 0);  // and check_log() still joins the pieces
   EXPECT_EQ(check_log(log, 7, static_cast<std::int64_t>(log.size())), 0);
 }

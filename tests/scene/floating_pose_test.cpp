@@ -30,7 +30,7 @@ TEST(FloatingPose, DisplacesTheRequestedVolume) {
         make_hydrostatic_mesh(validate_mesh({make_shape(shape), {}}, "shape", {}).mesh.value());
     for (int run = 0; run < 60; ++run) {
       const Eigen::Quaterniond q(
-          Eigen::Vector4d(uniform(random), uniform(random), uniform(random), uniform(random)).normalized());
+          Eigen::Vector4d{uniform(random), uniform(random), uniform(random), uniform(random)}.normalized());
       const double exponent = 4.0 * std::abs(uniform(random));
       const double fraction = run % 2 == 0 ? std::pow(10.0, -exponent) : 1.0 - std::pow(10.0, -exponent);
       const double volume = fraction * mesh.volume;

@@ -173,9 +173,9 @@ struct Motion {
 
 Motion random_motion(std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
+  const auto vector = [&] { return Vec3{normal(random), normal(random), normal(random)}; };
   Motion motion;
-  const Eigen::Quaterniond q(normal(random), normal(random), normal(random), normal(random));
+  const Eigen::Quaterniond q{normal(random), normal(random), normal(random), normal(random)};
   motion.body = {q.normalized().toRotationMatrix(), 2.0 * vector(), vector()};
   motion.current_W = vector();
   motion.acceleration << vector(), vector();

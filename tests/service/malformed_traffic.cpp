@@ -92,9 +92,11 @@ class Attacker {
         return send_fragment();
       case 2:
         return send_wrong_header();
-      case 3:
+      case 3: {
         ++sent_.unrelated;
-        return socket_.send("OTHER_" + std::to_string(below(100)), garbage(below(200)));
+        const std::string channel = "OTHER_" + std::to_string(below(100));
+        return socket_.send(channel, garbage(below(200)));
+      }
       default:
         return send_on_request_channel(corrupted(valid_request()));
     }
@@ -115,9 +117,9 @@ class Attacker {
   }
 
   RawBytes valid_request() {
-    WrenchRequest states =
-        one_body(static_cast<std::int64_t>(100 + below(200)), static_cast<std::int64_t>(below(1000)),
-                 0.01 * static_cast<double>(below(100)));
+    const auto session_id = static_cast<std::int64_t>(100 + below(200));
+    const auto seq = static_cast<std::int64_t>(below(1000));
+    WrenchRequest states = one_body(session_id, seq, 0.01 * static_cast<double>(below(100)));
     states.bodies.resize(below(5), states.bodies[0]);
     return encoded(states);
   }

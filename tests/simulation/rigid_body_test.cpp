@@ -86,11 +86,11 @@ TEST(RigidBody, TransfersTorqueToCentreOfMass) {
   const RigidBody body = rigid_body_of(scene);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-2.0, 2.0);
-  const auto random_vector = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+  const auto random_vector = [&] { return Vec3{uniform(random), uniform(random), uniform(random)}; };
   for (int i = 0; i < 100; ++i) {
     RigidBodyState state;
     state.center_W = random_vector();
-    state.q_WB = Eigen::Quaterniond(uniform(random), uniform(random), uniform(random), uniform(random));
+    state.q_WB = Eigen::Quaterniond{uniform(random), uniform(random), uniform(random), uniform(random)};
     state.q_WB.normalize();
     const Pose pose = pose_of(body, state);
     const Vec3 reference_W = pose.p_WB + pose.q_WB * body.reference_B;

@@ -102,10 +102,10 @@ TEST(Potential, MatchesTheWorkOfTheLoads) {
     };
     std::mt19937 random(31);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    const auto vector = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+    const auto vector = [&] { return Vec3{uniform(random), uniform(random), uniform(random)}; };
     for (int i = 0; i < 50; ++i) {
       RigidBodyState state;
-      state.q_WB = Eigen::Quaterniond(uniform(random), uniform(random), uniform(random), uniform(random));
+      state.q_WB = Eigen::Quaterniond{uniform(random), uniform(random), uniform(random), uniform(random)};
       state.q_WB.normalize();
       state.center_W = vector();
       state.center_W += (water.level + uniform(random) - water.up_W.dot(state.center_W)) * water.up_W;

@@ -85,8 +85,8 @@ TEST(StressGrazing, TreatsFeaturesOnPlaneAsDry) {
   for_each_turn(301, tries(6), [&](RandomPoses& random, const StressedBody& body, int) {
     const auto vertex = static_cast<std::int32_t>(random.pick(body.source.vertex_count()));
     const StressedBody moved(body.name, moved_and_scaled(body.source, -body.source.vertex(vertex)));
-    check_exactly(stress, moved, {Vec3(0, 0, kStressWater.level), random.rotation()}, kStressWater,
-                  reference_near(random, moved), ", a vertex");
+    const Pose pose{Vec3(0, 0, kStressWater.level), random.rotation()};
+    check_exactly(stress, moved, pose, kStressWater, reference_near(random, moved), ", a vertex");
   });
   const StressedBody bar("box with an edge in x",
                          moved_and_scaled(make_shape(BoxShape{.segments = {3, 2, 2}}), {0, 0.5, 0.5}));
@@ -136,8 +136,8 @@ TEST(StressGrazing, IsExactForFlatFaceWithinUlpsOfPlane) {
             water.level = level;
             Pose pose;
             // A tilt of a few ulp makes some of the face wet and some dry.
-            const Eigen::Quaterniond tilt(1.0, random.uniform(-4, 4) * kEpsilon,
-                                          random.uniform(-4, 4) * kEpsilon, 0);
+            const Eigen::Quaterniond tilt{1.0, random.uniform(-4, 4) * kEpsilon,
+                                          random.uniform(-4, 4) * kEpsilon, 0.0};
             pose.q_WB = tilt * (oblique ? rotation.conjugate() : Eigen::Quaterniond::Identity());
             pose.p_WB.z() = shifted_by_ulps(level - face, k);
             check_exactly(stress, body, pose, water, reference_near(random, body));

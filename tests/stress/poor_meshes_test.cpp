@@ -103,9 +103,8 @@ TEST(StressPoorMeshes, DropsAndReportsFacesThatRepeatAnIndex) {
     const auto a = static_cast<std::int32_t>(random.pick(clean.vertex_count()));
     const auto b = static_cast<std::int32_t>(random.pick(clean.vertex_count()));
     const std::vector<Triangle> kinds{{a, a, b}, {a, b, a}, {b, a, a}, {a, a, a}};
-    poor.triangles.insert(
-        poor.triangles.begin() + static_cast<std::ptrdiff_t>(random.pick(poor.triangles.size())),
-        kinds[random.pick(kinds.size())]);
+    const auto place = static_cast<std::ptrdiff_t>(random.pick(poor.triangles.size()));
+    poor.triangles.insert(poor.triangles.begin() + place, kinds[random.pick(kinds.size())]);
   }
   const MeshValidation of_clean = validate_mesh({clean, {}}, "clean");
   const MeshValidation of_poor = validate_mesh({poor, {}}, "poor");
@@ -139,8 +138,8 @@ TEST(StressPoorMeshes, IsExactForThinPlate) {
     // The plate lies flat in the water, with the water plane between its two sides.
     for (int i = 0; i < tries(40); ++i) {
       const double height = kStressWater.level + 1e-8 * random.uniform(-0.6, 0.6);
-      const Eigen::Quaterniond flat(1.0, random.uniform(-1e-8, 1e-8), random.uniform(-1e-8, 1e-8),
-                                    random.uniform(-1, 1));
+      const Eigen::Quaterniond flat{1.0, random.uniform(-1e-8, 1e-8), random.uniform(-1e-8, 1e-8),
+                                    random.uniform(-1, 1)};
       check_exactly(stress, plate, {Vec3(0, 0, height), flat}, kStressWater, reference_near(random, plate));
     }
   }

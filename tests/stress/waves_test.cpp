@@ -226,8 +226,9 @@ TEST(StressWaves, TakesBodiesFarAwayToday) {
     snapshot.set_time(utime);
     for (const WaveBodyUnderTest& body : wave_bodies()) {
       for (const double tolerance : {1e-3, 1e-5}) {
-        const Pose pose = pose_across(random, body, sea, snapshot, 1e6 * random.uniform(-1.0, 1.0),
-                                      1e6 * random.uniform(-1.0, 1.0));
+        const double x1 = 1e6 * random.uniform(-1.0, 1.0);
+        const double x2 = 1e6 * random.uniform(-1.0, 1.0);
+        const Pose pose = pose_across(random, body, sea, snapshot, x1, x2);
         check_by_reference(stress, {body, sea, utime, pose, tolerance});
       }
     }

@@ -124,7 +124,7 @@ TEST(WaveLoadOnGrids, IsWithinItsBounds) {
     pose.p_WB = x1 * axes.e1_W + x2 * axes.e2_W + height * water.up_W -
                 R_WB * (body.mesh.center_B + 0.5 * (body.mesh.box_min + body.mesh.box_max));
     const double tolerance = random.power_of_ten(-5.0, -2.0);
-    const Vec3 reference_B = random.uniform(0.0, 2.0) * random.direction();
+    const Vec3 reference_B = random.vector(0.0, 2.0);
     ASSERT_TRUE(sea->now.surface().holds(footprint_of(body.mesh, pose, axes)));
     const WaveLoad load = sea->load(body, pose, tolerance, reference_B);
     certified += static_cast<int>(load.force_bound <= tolerance * body.mesh.volume);
@@ -259,7 +259,7 @@ TEST(WaveLoadOnGrids, BetweenTwoGridsIsThatOfTheirMean) {
 
 TEST(WaveLoadOnGrids, AllocatesNothingAfterWarmUp) {
   std::mt19937_64 random(32);
-  const GridSea sea(random_grid(random, true, 0.2, 0.5), random_grid(random, true, 0.2, 0.5));
+  const GridSea sea{random_grid(random, true, 0.2, 0.5), random_grid(random, true, 0.2, 0.5)};
   const auto load_at = [&](int n) {
     Pose pose = floating_pose();
     pose.p_WB.x() += 0.1 * n;
