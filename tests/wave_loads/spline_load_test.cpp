@@ -79,8 +79,8 @@ SampledGrid grid_around(RandomPoses& random, double x1, double x2, double diagon
     const auto cells = static_cast<double>(sides[n] - 1);
     spacing[n] = 1.2 * diagonal / cells * random.log_uniform(periodic ? 0.5 : 1.0, 12.0);
     const double spare = cells * spacing[n] - 1.1 * diagonal;
-    origin[n] = (n == 0 ? x1 : x2) - 0.55 * diagonal - std::max(spare, 0.0) * random.uniform(0.0, 1.0) +
-                (periodic ? random.uniform(-100.0, 100.0) : 0.0);
+    origin[n] = (n == 0 ? x1 : x2) - 0.55 * diagonal - std::max(spare, 0.0) * random.uniform(0.0, 1.0);
+    if (periodic) origin[n] += random.uniform(-100.0, 100.0);
   }
   const double height = std::min(spacing[0], spacing[1]) * random.log_uniform(0.003, 0.6);
   const double mean = random.uniform(-0.5, 0.5) * diagonal;
