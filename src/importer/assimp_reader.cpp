@@ -220,16 +220,17 @@ void append_instance(const aiMesh& part, const Transform& x_BN, bool as_triangle
   for (unsigned int f = 0; f < part.mNumFaces; ++f) {
     const aiFace& face = part.mFaces[f];
     if (face.mNumIndices < 3) continue;
+    if (as_triangles) {
+      const auto corner = [&](int i) { return first + static_cast<std::int32_t>(face.mIndices[i]); };
+      mesh.triangles.push_back({corner(0), corner(mirrored ? 2 : 1), corner(mirrored ? 1 : 2)});
+      continue;
+    }
     corners.clear();
     for (unsigned int corner = 0; corner < face.mNumIndices; ++corner) {
       corners.push_back(first + static_cast<std::int32_t>(face.mIndices[corner]));
     }
     if (mirrored) std::reverse(corners.begin() + 1, corners.end());
-    if (as_triangles) {
-      mesh.triangles.push_back({corners[0], corners[1], corners[2]});
-    } else {
-      stored.polygons.add(corners);
-    }
+    stored.polygons.add(corners);
   }
 }
 

@@ -13,6 +13,7 @@
 #include "importer/assimp_reader.h"
 #include "importer/cage.h"
 #include "importer/panel_reader.h"
+#include "importer/stl_reader.h"
 
 namespace buoyancy {
 namespace {
@@ -23,6 +24,15 @@ bool parent_is_gone() {
   return ::recv(kImporterSocket, &byte, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
 }
 
+Expected<StoredMesh> read(const ImportRequest& request, const OpenFile& open) {
+  if (is_panel_format(request.format)) return read_panels(request, open);
+  if (request.format == MeshFormat::kStl) {
+    if (std::optional<Expected<StoredMesh>> stored = read_binary_stl(request, open))
+      return *std::move(stored);
+  }
+  return read_with_assimp(request, open);
+}
+
 int run() {
   const std::optional<ImportRequest> request = receive_request(kImporterSocket);
   if (!request) return EXIT_FAILURE;
@@ -31,9 +41,7 @@ int run() {
   const auto open = [](const std::string& name) { return request_file(kImporterSocket, name); };
   std::set_new_handler([] { ::_exit(kOutOfMemoryExit); });
   try {
-    const Expected<StoredMesh> stored =
-        is_panel_format(request->format) ? read_panels(*request, open) : read_with_assimp(*request, open);
-    return send_import(kImporterSocket, stored) ? EXIT_SUCCESS : EXIT_FAILURE;
+    return send_import(kImporterSocket, read(*request, open)) ? EXIT_SUCCESS : EXIT_FAILURE;
   } catch (const std::bad_alloc&) {
     return kOutOfMemoryExit;
   } catch (...) {

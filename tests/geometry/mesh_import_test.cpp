@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -10,9 +11,12 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "base/format.h"
 #include "geometry/mass_properties.h"
+#include "geometry/mesh_export.h"
 #include "geometry/mesh_format.h"
 #include "geometry/mesh_validation.h"
+#include "geometry/shapes.h"
 #include "tests/geometry/mesh_files.h"
 #include "tests/geometry/sample_meshes.h"
 #include "tests/geometry/shared_mesh_files.h"
@@ -68,6 +72,33 @@ TEST_F(MeshImport, KeepsUnweldedVerticesAndDegenerateTriangles) {
       "OFF\n4 5 0\n0 0 0\n1e-6 0 0\n0 1e-6 0\n0 0 1e-6\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 1 1\n"));
   EXPECT_EQ(off.mesh.triangles.size(), 5U);
   EXPECT_NEAR(volume_of(off.mesh), 1e-18 / 6.0, 1e-24);
+}
+
+// The program's own reader, and assimp, which reads text.
+TEST_F(MeshImport, ReadsBinaryStlAsTextStl) {
+  TriangleMesh mesh = as_imported(make_shape(RockShape{.frequency = 30}));  // more than it reads at a time
+  ASSERT_GT(mesh.triangles.size(), 16'384U);
+  mesh.x[0] = -0.0;
+  std::string text = "solid rock\n";
+  for (const Triangle& triangle : mesh.triangles) {
+    text += "facet normal 0 0 1\nouter loop\n";
+    for (const std::int32_t v : triangle) {
+      const Vec3 vertex = mesh.vertex(v);
+      text += "vertex " + format_number(vertex.x(), 17) + " " + format_number(vertex.y(), 17) + " " +
+              format_number(vertex.z(), 17) + "\n";
+    }
+    text += "endloop\nendfacet\n";
+  }
+  const ImportedMesh binary = imported(directory_.write("binary.stl", export_mesh(mesh, ExportFormat::kStl)));
+  const ImportedMesh read = imported(directory_.write("text.stl", text + "endsolid rock\n"));
+  EXPECT_TRUE(binary.mesh.triangles == read.mesh.triangles);
+  EXPECT_TRUE(binary.mesh.x == read.mesh.x);
+  EXPECT_TRUE(binary.mesh.y == read.mesh.y);
+  EXPECT_TRUE(binary.mesh.z == read.mesh.z);
+  EXPECT_TRUE(std::ranges::none_of(binary.mesh.x, [](double x) { return x == 0.0 && std::signbit(x); }));
+  EXPECT_EQ(binary.source.up_axis, read.source.up_axis);
+  EXPECT_EQ(binary.source.note, read.source.note);
+  EXPECT_EQ(binary.source.nodes, read.source.nodes);
 }
 
 TEST_F(MeshImport, SplitsPolygonsIntoTriangles) {
