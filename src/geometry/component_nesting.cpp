@@ -102,6 +102,7 @@ std::vector<std::optional<WindingNumber>> candidate_surfaces(const TriangleMesh&
 
 std::optional<std::vector<std::vector<std::int32_t>>> enclosing_components(const TriangleMesh& mesh,
                                                                            const MeshTopology& topology) {
+  if (topology.components < 2) return ComponentLists(static_cast<std::size_t>(topology.components));
   std::optional<ComponentLists> enclosing = enclosing_boxes(component_boxes(mesh, topology));
   if (!enclosing) return std::nullopt;
   std::vector<bool> is_candidate(enclosing->size(), false);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "geometry/parallel_tasks.h"
+
 namespace buoyancy {
 
 EdgeUses collect_edge_uses(const TriangleMesh& mesh) {
@@ -26,10 +28,12 @@ EdgeUses collect_edge_uses(const TriangleMesh& mesh) {
           std::max(from, to), face[(corner + 2) % 3], static_cast<std::int32_t>(f), from < to};
     }
   }
-  for (std::size_t v = 0; v + 1 < edges.first.size(); ++v) {
-    std::sort(edges.uses.begin() + static_cast<std::ptrdiff_t>(edges.first[v]),
-              edges.uses.begin() + static_cast<std::ptrdiff_t>(edges.first[v + 1]));
-  }
+  run_parallel_ranges(mesh.vertex_count(), [&edges](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      std::sort(edges.uses.begin() + static_cast<std::ptrdiff_t>(edges.first[v]),
+                edges.uses.begin() + static_cast<std::ptrdiff_t>(edges.first[v + 1]));
+    }
+  });
   return edges;
 }
 

@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "geometry/component_nesting.h"
-#include "geometry/pairwise_sum.h"
+#include "geometry/pairwise_total.h"
 
 namespace buoyancy {
 namespace {
@@ -99,12 +99,11 @@ std::vector<ComponentReport> describe_components(const TriangleMesh& mesh, const
   const FacesByComponent grouped = faces_by_component(topology);
   std::vector<ComponentReport> components(static_cast<std::size_t>(topology.components));
   for (std::size_t i = 0; i < components.size(); ++i) {
-    PairwiseSum<double> volume;
-    for (std::size_t n = grouped.first[i]; n < grouped.first[i + 1]; ++n) {
-      volume.add(signed_volume(mesh, mesh.triangles[grouped.faces[n]], center_B));
-    }
-    components[i].triangles = static_cast<std::int64_t>(grouped.first[i + 1] - grouped.first[i]);
-    components[i].volume = volume.total();
+    const std::size_t count = grouped.first[i + 1] - grouped.first[i];
+    components[i].triangles = static_cast<std::int64_t>(count);
+    components[i].volume = pairwise_total<double>(count, [&](std::size_t n) {
+      return signed_volume(mesh, mesh.triangles[grouped.faces[grouped.first[i] + n]], center_B);
+    });
     components[i].closed = true;
   }
   for (const std::int32_t face : topology.boundary_faces) {

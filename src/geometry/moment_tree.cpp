@@ -312,10 +312,8 @@ class Builder {
 
   void sort_triangles() {
     items_.resize(surface_.triangles.size());
-    const std::size_t tasks = (items_.size() + kTask - 1) / kTask;
-    run_parallel_tasks(tasks, threads_, [this](std::size_t task) {
-      const std::size_t end = std::min(items_.size(), (task + 1) * kTask);
-      for (std::size_t t = task * kTask; t < end; ++t) {
+    run_parallel_ranges(items_.size(), [this](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
         const Triangle& triangle = surface_.triangles[t];
         items_[t] = make_item(
             surface_.vertex(triangle[0]) + surface_.vertex(triangle[1]) + surface_.vertex(triangle[2]), t);
@@ -324,12 +322,8 @@ class Builder {
   }
 
   void set_units() {
-    double reach = 0.0;
-    for (const Triangle& triangle : surface_.triangles) {
-      for (const std::int32_t vertex : triangle) {
-        reach = std::max(reach, surface_.vertex(vertex).cwiseAbs().maxCoeff());
-      }
-    }
+    const BoundingBox box = bounding_box(surface_);
+    const double reach = box.min_B.cwiseAbs().cwiseMax(box.max_B.cwiseAbs()).maxCoeff();
     // The powers are at least the smallest normal number, so that divisions by them do not overflow.
     const auto power_of_two = [](int exponent) {
       return std::ldexp(1.0, std::max(exponent, std::numeric_limits<double>::min_exponent - 1));

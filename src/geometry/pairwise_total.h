@@ -1,7 +1,6 @@
 // Sums the terms of a long list on several threads, with the bits of PairwiseSum.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -15,15 +14,13 @@ namespace buoyancy {
 template <typename T, typename Term>
 T pairwise_total(std::size_t count, const Term& term) {
   constexpr std::size_t kBlock = 256;
-  constexpr std::size_t kBlocksPerTask = 32;
+  static_assert(kParallelRange % kBlock == 0);
   std::vector<T> blocks(count / kBlock);
-  const std::size_t tasks = (blocks.size() + kBlocksPerTask - 1) / kBlocksPerTask;
-  run_parallel_tasks(tasks, tasks > 2 ? max_parallel_tasks() : 1, [&](std::size_t task) {
-    const std::size_t end = std::min(blocks.size(), (task + 1) * kBlocksPerTask);
-    for (std::size_t block = task * kBlocksPerTask; block < end; ++block) {
+  run_parallel_ranges(blocks.size() * kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; i += kBlock) {
       T sum{};
-      for (std::size_t i = block * kBlock; i < (block + 1) * kBlock; ++i) sum += term(i);
-      blocks[block] = sum;
+      for (std::size_t n = i; n < i + kBlock; ++n) sum += term(n);
+      blocks[i / kBlock] = sum;
     }
   });
   PairwiseSum<T, kBlock> sum;

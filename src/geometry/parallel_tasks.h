@@ -37,4 +37,15 @@ void run_parallel_tasks(std::size_t count, std::size_t threads, const Work& work
   for (std::future<void>& other : others) other.get();
 }
 
+// Calls work(begin, end) for every range of kParallelRange numbers, the last one perhaps shorter, of those
+// below `count`, on several threads if there are more than two ranges. See run_parallel_tasks().
+inline constexpr std::size_t kParallelRange = 8192;
+template <typename Work>
+void run_parallel_ranges(std::size_t count, const Work& work) {
+  const std::size_t tasks = (count + kParallelRange - 1) / kParallelRange;
+  run_parallel_tasks(tasks, tasks > 2 ? max_parallel_tasks() : 1, [&](std::size_t task) {
+    work(task * kParallelRange, std::min(count, (task + 1) * kParallelRange));
+  });
+}
+
 }  // namespace buoyancy

@@ -7,6 +7,7 @@
 
 #include "base/double_double.h"
 #include "geometry/pairwise_total.h"
+#include "geometry/parallel_tasks.h"
 #include "hydrostatics/volume_elements.h"
 
 namespace buoyancy {
@@ -140,9 +141,12 @@ HydrostaticMesh make_hydrostatic_mesh(const ValidatedMesh& validated, WithTree w
   mesh.surface.y = recentre(source.y, mesh.center_B.y());
   mesh.surface.z = recentre(source.z, mesh.center_B.z());
 
-  mesh.surface.triangles.reserve(source.triangles.size());
-  for (const Triangle& triangle : source.triangles)
-    mesh.surface.triangles.push_back(starting_opposite_longest_edge(triangle, mesh.surface));
+  mesh.surface.triangles.resize(source.triangles.size());
+  run_parallel_ranges(source.triangles.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      mesh.surface.triangles[i] = starting_opposite_longest_edge(source.triangles[i], mesh.surface);
+    }
+  });
 
   const auto totals = pairwise_total<Totals>(mesh.surface.triangles.size(), [&mesh](std::size_t i) {
     const Triangle& triangle = mesh.surface.triangles[i];
