@@ -12,6 +12,8 @@
 #include "tests/fmu/importer.h"
 #include "tests/query/pose_table.h"
 #include "tests/support/build_paths.h"
+#include "tests/support/child_process.h"
+#include "tests/support/csv.h"
 #include "tests/support/scene_of.h"
 
 namespace buoyancy::fmu {
@@ -311,6 +313,37 @@ TEST(Fmu, SavesAndRestoresStates) {
     EXPECT_EQ(other.call(deserialize, data, bytes.size() - 1, &state), kFmiError);
     bytes.front() ^= 1U;
     EXPECT_EQ(other.call(deserialize, data, bytes.size(), &state), kFmiError);
+  }
+}
+
+// The same heave: by a loop around the FMU, and by buoyancy-client.
+TEST(Fmu, HeavesAsClientDoes) {
+  const std::string text =
+      "[[body]]\nid = 1\nname = \"box\"\nshape = { type = \"box\", size = [1, 1, 0.5] }\n"
+      "[body.client]\nmass = 256.25\nposition = [0, 0, 0.2]\n";
+  const TempDir dir;
+  ChildProcess client(
+      command_of({built_program("buoyancy-client"), "--embedded", "--scene", dir.write("scene.toml", text),
+                  "--duration", "5", "--step", "0.01", "--csv", dir.path("run.csv")}));
+  ASSERT_EQ(client.wait(kRunTimeout), 0) << client.standard_error();
+  const std::vector<double> heights = csv_column(read_file(dir.path("run.csv")), "pz");
+  ASSERT_GT(heights.size(), 400U);
+
+  const UnpackedFmu fmu(text);
+  const Importer host(fmu, FmiVersion::k3);
+  ASSERT_EQ(host.initialize(), kFmiOk);
+  constexpr double kStep = 0.01;
+  double z = 0.2, velocity = 0.0;
+  const auto kick = [&] {
+    ASSERT_EQ(host.set("box.position", {0.0, 0.0, z}), kFmiOk);
+    velocity += 0.5 * kStep * (host.get("box.force")[2] / 256.25 - 9.80665);
+  };
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    EXPECT_NEAR(z, heights[i], 1e-12) << "step " << i;
+    kick();
+    z += kStep * velocity;
+    ASSERT_EQ(host.step(static_cast<double>(i) * kStep, kStep), kFmiOk);
+    kick();
   }
 }
 
