@@ -275,6 +275,21 @@ TEST(Fmu, FollowsStateMachine) {
   }
 }
 
+TEST(Fmu, MovesOutputsByInputsAndTimeAlone) {
+  const UnpackedFmu fmu(kWaves + kRock);
+  for (const FmiVersion version : kVersions) {
+    const Importer host(fmu, version);
+    ASSERT_EQ(host.initialize(20.0), kFmiOk);
+    const std::vector<double> at_20 = host.get("rock.force");
+    ASSERT_EQ(host.step(20.0, 0.5), kFmiOk);
+    EXPECT_NE(host.get("rock.force"), at_20);
+    ASSERT_EQ(host.step(20.5, -0.5), kFmiOk);
+    EXPECT_EQ(host.get("rock.force"), at_20);
+    ASSERT_EQ(host.set("rock.position", {0.0, 0.0, 0.1}), kFmiOk);
+    EXPECT_NE(host.get("rock.force"), at_20);
+  }
+}
+
 TEST(Fmu, SavesAndRestoresStates) {
   const UnpackedFmu fmu(kWaves + kRock);
   const PoseTable poses = timed_poses(3);
