@@ -17,7 +17,7 @@ inline std::vector<Pose> sweep_of_poses(const TriangleMesh& mesh, int count = 10
   std::vector<Pose> poses;
   for (int i = 0; i < count; ++i) {
     Pose pose;
-    for (const int i : {2, 1, 0, 3}) pose.q_WB.coeffs()[i] = normal(generator);  // z, y, x, w
+    for (const int part : {2, 1, 0, 3}) pose.q_WB.coeffs()[part] = normal(generator);  // z, y, x, w
     pose.q_WB.normalize();
     const Vec3 up_B = pose.q_WB.conjugate() * Vec3::UnitZ();
     double min_height = 1e300;
