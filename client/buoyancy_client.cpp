@@ -153,10 +153,10 @@ int simulate(const CLI::App& app, Arguments arguments) {
   const Expected<Scene> scene = Scene::load(arguments.scene);
   if (!scene) return fail(scene.error(), kUsageError);
   if (arguments.embedded && scene->receives_sea()) {
-    return fail(
-        {"--embedded", "a scene with waves = \"received\"", "a scene that describes its waves",
-         "nothing is received without a network", "Run buoyancyd, or describe the waves in the scene"},
-        kUsageError);
+    return fail({"--embedded", std::string("a scene with ") + to_string(scene->sea_messages()),
+                 "a scene that describes its waves", "nothing is received without a network",
+                 "Run buoyancyd, or describe the waves in the scene"},
+                kUsageError);
   }
   Expected<Simulation> simulation = Simulation::make(*scene, options);
   if (!simulation) return fail(simulation.error(), kUsageError);

@@ -75,6 +75,12 @@ Expected<ByteVector> sea_to_publish(const PingOptions& options, const Scene& sce
                        "the service uses a published sea only where its scene says waves = \"received\"",
                        ""});
   }
+  if (scene.receives_grids()) {
+    return make_error({options.scene.string(), to_string(scene.sea_messages()),
+                       "a scene that describes its waves, or waves = \"received\"",
+                       "this program sends no grids",
+                       "Test the connection with waves = \"received\" and --sea"});
+  }
   if (options.sea.empty()) {
     return make_error({options.scene.string(), "waves = \"received\" and no --sea",
                        "--sea FILE, a scene file with waves and the same up and gravity",
@@ -83,7 +89,7 @@ Expected<ByteVector> sea_to_publish(const PingOptions& options, const Scene& sce
   }
   const Expected<SceneDescription> description = read_scene_file(options.sea);
   if (!description) return make_error(description.error());
-  if (description->waves_received || description->sea.systems.empty()) {
+  if (description->sea_messages != SeaMessages::kNone || description->sea.systems.empty()) {
     return make_error(
         {"--sea " + options.sea.string(), "describes no waves", "a scene file with [[water.waves]]", "", ""});
   }

@@ -111,9 +111,10 @@ buoyancy_error buoyancy_scene_sea(const buoyancy_scene* scene, buoyancy_sea** se
     const buoyancy_scene* const of = checks.handle("scene", scene);
     if (checks.failed()) return checks.failure();
     if (!of->water.is_known) {
-      return buoyancy::failure(BUOYANCY_ERROR_SCENE,
-                               {of->scene.name(), "waves = \"received\"", "the wave systems themselves",
-                                "no messages are received in a query", "List the systems in the scene"});
+      return buoyancy::failure(
+          BUOYANCY_ERROR_SCENE,
+          {of->scene.name(), buoyancy::to_string(of->scene.sea_messages()), "the wave systems themselves",
+           "no messages are received in a query", "List the systems in the scene"});
     }
     buoyancy::Expected<buoyancy::QuerySea> made = buoyancy::QuerySea::make(of->sea, of->scene.water());
     if (!made) return buoyancy::failure(BUOYANCY_ERROR_SCENE, std::move(made.error()));

@@ -110,10 +110,10 @@ FlowAtBody flow_at_body(const WaterState& water, const Current& current, const V
   const double rounding = 8.0 * kEpsilon * (p_W.lpNorm<1>() + std::abs(sea.water().level));  // of positions
   if (!sea.surfaces().empty()) {
     // The difference of two surfaces over the time between them; of one surface there is no velocity.
-    if (water.waves->surface().count < 2) return motion;
-    const auto between = static_cast<double>(sea.surfaces()[1].utime - sea.surfaces()[0].utime);
+    const double between = water.waves->time_between_surfaces();
+    if (between == 0.0) return motion;
     const auto [elevation, slope, curvature] = expansion.amplitude_sums;
-    motion.velocity_error = 2e6 * (0x1p-40 * elevation + slope * rounding) / between;
+    motion.velocity_error = 2.0 * (0x1p-40 * elevation + slope * rounding) / between;
     return motion;
   }
   // The acceleration of a component is at most g a k, and its velocity at most g a k over its frequency. The

@@ -78,7 +78,7 @@ RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
   const RequestId& id = request->id();
   const auto known = std::ranges::find(sessions_, id.session_id, &Session::id);
   const bool is_new = known == sessions_.end();
-  if (!is_new && same_bytes(known->last_request, bytes)) {
+  if (!is_new && is_retry(*known, *request, bytes)) {
     ++counters_.retries;
     known->last_use = ++use_;
     if (known->work.in_progress) return Step::kStarted;
@@ -93,12 +93,14 @@ RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
   Session& session = *found;
   session.last_use = ++use_;
   const auto index = static_cast<std::size_t>(&session - sessions_.data());
-  const bool has_reply = !session.last_request.empty();
+  const bool conflicts =
+      !session.last_request.empty() && id.seq == session.last_seq && !same_bytes(session.last_request, bytes);
   if (checks_motion_) check_motion(session, *request);
   return finish(index, [&] {
     bool has_room = begin_work(*request, bytes.size(), session);
-    const bool complete =
-        has_room && advance(*request, session, water_.move_to(id.utime, request->lead_time()), deadline);
+    const WaterAtTime::Change now = water_.move_to(id.utime, request->lead_time());
+    const bool complete = has_room && advance(*request, session, now, deadline);
+    session.lacks_sea = now.water.at_rest == nullptr;
     if (!complete && in_progress_.size() == kMaxInProgress) has_room = false;
     if (!has_room) {
       session.pace = Pace::kSeveralSlices;
@@ -109,7 +111,7 @@ RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
     // The request is stored only when its response is complete or in progress. Otherwise, if memory ran out
     // in between, a retry of the previous request would get parts of the new response.
     session.last_request.assign(bytes.begin(), bytes.end());
-    if (has_reply && id.seq == session.last_seq) ++counters_.conflicting_retries;
+    if (conflicts) ++counters_.conflicting_retries;
     if (!is_new && id.seq < session.newest_seq) ++counters_.stale;
     session.last_seq = id.seq;
     session.newest_seq = std::max(session.newest_seq, id.seq);
@@ -118,7 +120,7 @@ RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
     if (!complete) {
       ++counters_.requests_sliced;
       session.work.in_progress = true;
-      session.work.sea = water_.sea_at(id.utime);
+      session.work.sea = water_.sea_at(id.utime, request->lead_time());
       in_progress_.push_back(index);
       return Step::kStarted;
     }
@@ -158,7 +160,8 @@ RequestHandler::Step RequestHandler::resume(Deadline deadline) {
     if (work.changes != changes_) {
       has_room = begin_work(request, session.last_request.size(), session);
       now = water_.move_to(id.utime, request.lead_time());
-      work.sea = water_.sea_at(id.utime);
+      work.sea = water_.sea_at(id.utime, request.lead_time());
+      session.lacks_sea = now.water.at_rest == nullptr;
     } else if (work.sea != nullptr) {
       now = water_.move_to(work.sea, id.utime, request.lead_time());
     }
@@ -187,7 +190,14 @@ RequestHandler::Pace RequestHandler::pace_of(std::int64_t session_id) const {
 
 bool RequestHandler::is_retry(std::int64_t session_id, Bytes request) const {
   const auto known = std::ranges::find(sessions_, session_id, &Session::id);
-  return known != sessions_.end() && same_bytes(known->last_request, request);
+  const auto view = RequestView::of(request);
+  return known != sessions_.end() && view && is_retry(*known, *view, request);
+}
+
+bool RequestHandler::is_retry(const Session& session, const RequestView& request, Bytes bytes) const {
+  if (!same_bytes(session.last_request, bytes)) return false;
+  return session.work.in_progress || !session.lacks_sea ||
+         water_.sea_at(request.id().utime, request.lead_time()) == nullptr;
 }
 
 bool RequestHandler::has_room_for(std::int64_t session_id) const {

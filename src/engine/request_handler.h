@@ -4,7 +4,8 @@
 //
 // Contract:
 // - The response carries the request's (utime, session_id, seq).
-// - A retry, byte for byte the session's last request, gets the same bytes back without computing.
+// - A retry, byte for byte the session's last request, gets the same bytes back without computing, unless
+//   there was no sea for its time and one has been received since then.
 // - The same (session_id, seq) with other bytes is a new request.
 // - A seq lower than the session's newest is handled too, and counted as stale: if it were dropped, a client
 //   that starts over would get no response.
@@ -121,12 +122,17 @@ class RequestHandler {
   // The session of the last request. Precondition: it was answered.
   std::int64_t last_session_id() const { return sessions_[last_session_.value()].id; }
 
-  // Receives a sea_state_t for a scene whose waves are received (Scene::receives_sea()); see SeaTimeline.
-  // Counts it. Errors: those of SeaTimeline::receive(); then nothing changes.
+  // Receives a sea_state_t or sea_grid_t for a scene that receives it (Scene::receives_sea()); see
+  // SeaTimeline. Counts it. Errors: those of SeaTimeline::receive(); then nothing changes.
   Expected<void> receive_sea(Bytes message);
-  // The sea that holds for the latest requests; nullptr: none has been received.
+  // These receive a sea_grid_t whose surface is set elsewhere meanwhile: the memory for it, and the result.
+  std::shared_ptr<ElevationSpline> spare_surface() { return water_.spare_surface(); }
+  void receive_surface(const SeaGridHeader& header, std::shared_ptr<const ElevationSpline> surface) {
+    water_.receive_surface(header, std::move(surface)), ++counters_.seas_received;
+  }
+  // The sea that holds for the latest requests; nullptr: none has been received, or the sea comes on grids.
   std::shared_ptr<const SeaPeriod> newest_sea() const {
-    return water_.sea_at(std::numeric_limits<std::int64_t>::max());
+    return water_.sea_at(std::numeric_limits<std::int64_t>::max(), 0.0);
   }
   // These are for a replay that divides a recording: they replace the seas received so far; replace them and
   // count one more received sea, which is the last of them; count a sea that could not be used.
@@ -199,6 +205,7 @@ class RequestHandler {
     std::vector<std::uint8_t> last_hydrostatics;  // empty: no body of the last request has this output
     std::vector<std::uint8_t> last_loads;         // likewise
     Work work;
+    bool lacks_sea = false;  // last_response
     Pace pace = Pace::kUnknown;
     MotionCheck motion;
     std::size_t counted = 0;  // retained() when retained_ was updated last
@@ -211,6 +218,8 @@ class RequestHandler {
 
   void count_decode_error(DecodeError error);
   void check_motion(Session& session, const RequestView& request);
+  // Is it the session's last request, and is its response still that of the water at its time?
+  bool is_retry(const Session& session, const RequestView& request, Bytes bytes) const;
   void record_failures(const RequestView& request, std::size_t begin, std::size_t end,
                        const ResponseWriter& response);
   // Evicts the least recently used session if necessary; nullptr: all have a request in progress.

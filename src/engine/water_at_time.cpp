@@ -15,19 +15,24 @@ bool is_same_medium(const Scene& a, const Scene& b) {
 }  // namespace
 
 void WaterAtTime::set_scene(const Scene& scene, SeaTimeline seas) noexcept {
-  const bool keeps_seas = scene_->receives_sea() && scene.receives_sea() && is_same_medium(*scene_, scene);
-  if (!keeps_seas) seas_ = std::move(seas);
+  const bool keeps_seas = scene_->receives_sea() && scene.receives_sea() &&
+                          scene_->receives_grids() == scene.receives_grids() &&
+                          is_same_medium(*scene_, scene);
+  if (!keeps_seas) {
+    seas_ = std::move(seas);
+    memory_ = {};
+  }
   scene_ = &scene;
 }
 
-std::shared_ptr<const SeaPeriod> WaterAtTime::sea_at(std::int64_t utime) const {
-  const std::shared_ptr<const SeaPeriod>* const period = seas_.at(utime);
+std::shared_ptr<const SeaPeriod> WaterAtTime::sea_at(std::int64_t utime, double lead_time) const {
+  const std::shared_ptr<const SeaPeriod>* const period = seas_.at(utime, lead_time);
   return period == nullptr ? nullptr : *period;
 }
 
 WaterAtTime::Change WaterAtTime::move_to(std::int64_t utime, double lead_time) {
   if (scene_->sea() == nullptr && !scene_->receives_sea()) return {{&scene_->water(), nullptr}, false};
-  const std::shared_ptr<const SeaPeriod>* const period = seas_.at(utime);
+  const std::shared_ptr<const SeaPeriod>* const period = seas_.at(utime, lead_time);
   if (period == nullptr) return {};
   return move_to(*period, utime, lead_time);
 }

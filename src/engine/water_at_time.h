@@ -17,15 +17,23 @@ class WaterAtTime {
   // scene must outlive this object or the next set_scene().
   explicit WaterAtTime(const Scene& scene) : scene_(&scene), seas_(scene) {}
 
-  // Received seas remain where both scenes receive them and agree about the water's densities, up, gravity
-  // and current; else `seas`, those of the new scene, hold. The previous scene is not accessed again.
+  // Received seas remain where both scenes receive them, in the same messages, and agree about the water's
+  // densities, up, gravity and current; else `seas`, those of the new scene, hold. The previous scene is not
+  // accessed again.
   void set_scene(const Scene& scene, SeaTimeline seas) noexcept;
 
   // See SeaTimeline::receive().
-  Expected<void> receive_sea(Bytes message) { return seas_.receive(message, *scene_); }
+  Expected<void> receive_sea(Bytes message) { return seas_.receive(message, *scene_, memory_); }
+  // A surface for receive_surface(), see GridMemory::surface().
+  std::shared_ptr<ElevationSpline> spare_surface() { return memory_.surface(); }
+  // See SeaTimeline::add().
+  void receive_surface(const SeaGridHeader& header, std::shared_ptr<const ElevationSpline> surface) {
+    seas_.add(header, std::move(surface), *scene_, memory_);
+  }
   void set_seas(SeaTimeline seas) { seas_ = std::move(seas); }
-  // The sea that holds at this time; nullptr: none is known for it, or the scene's water is at rest.
-  std::shared_ptr<const SeaPeriod> sea_at(std::int64_t utime) const;
+  // The sea that holds at this time, see SeaTimeline::at(); nullptr: none is known for it, or the scene's
+  // water is at rest.
+  std::shared_ptr<const SeaPeriod> sea_at(std::int64_t utime, double lead_time) const;
 
   struct Change {
     WaterState water;
@@ -40,6 +48,7 @@ class WaterAtTime {
 
  private:
   const Scene* scene_;
+  GridMemory memory_;
   SeaTimeline seas_;
   // These belong to the last call of move_to().
   std::shared_ptr<const SeaPeriod> period_;

@@ -10,6 +10,7 @@
 #include <buoyancy/body_condition_t.hpp>
 #include <buoyancy/body_states_t.hpp>
 #include <buoyancy/body_wrenches_t.hpp>
+#include <buoyancy/sea_grid_t.hpp>
 #include <buoyancy/sea_state_t.hpp>
 #include <buoyancy/service_status_t.hpp>
 
@@ -30,12 +31,13 @@ std::string type_name(Bytes message) {
   std::uint64_t fingerprint = 0;
   if (message.size() < sizeof fingerprint) return "no fingerprint";
   BigEndianReader{message.data()}(fingerprint);
-  const std::array<std::pair<std::uint64_t, const char*>, 10> known{{
+  const std::array<std::pair<std::uint64_t, const char*>, 11> known{{
       {fingerprint_of<body_states_t>(), "buoyancy.body_states_t"},
       {fingerprint_of<body_wrenches_t>(), "buoyancy.body_wrenches_t"},
       {fingerprint_of<bodies_hydrostatics_t>(), "buoyancy.bodies_hydrostatics_t"},
       {fingerprint_of<bodies_loads_t>(), "buoyancy.bodies_loads_t"},
       {fingerprint_of<body_condition_t>(), "buoyancy.body_condition_t"},
+      {fingerprint_of<sea_grid_t>(), "buoyancy.sea_grid_t"},
       {fingerprint_of<sea_state_t>(), "buoyancy.sea_state_t"},
       {fingerprint_of<service_status_t>(), "buoyancy.service_status_t"},
       {kBotPoseFingerprint, "bot_core.pose_t"},

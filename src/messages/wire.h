@@ -23,6 +23,7 @@ inline constexpr std::string_view kHydrostaticsChannel = "BUOYANCY_HYDROSTATICS"
 inline constexpr std::string_view kLoadsChannel = "BUOYANCY_LOADS";
 inline constexpr std::string_view kStatusChannel = "BUOYANCY_STATUS";
 inline constexpr std::string_view kSeaChannel = "BUOYANCY_SEA";
+inline constexpr std::string_view kSeaGridChannel = "BUOYANCY_SEA_GRID";
 inline constexpr std::string_view kConditionChannel = "BUOYANCY_CONDITION";
 
 using Bytes = std::span<const std::uint8_t>;
@@ -32,7 +33,7 @@ enum class DecodeError {
   kTruncated,    // shorter than the fixed fields
   kFingerprint,  // another type, or another version of the type
   kCount,   // the number of bodies or wave components is negative or, of the latter, above the maximum; or
-            // a string is shorter than its final NUL
+            // rows and columns are out of range; or a string is shorter than its final NUL
   kLength,  // too short or too long for the count, or a string does not end at its stated length
 };
 const char* to_string(DecodeError error);  // for logs: "shorter than the fixed fields"

@@ -18,6 +18,7 @@
 #include "messages/hydrostatics.h"
 #include "messages/loads.h"
 #include "messages/request.h"
+#include "messages/sea_grid.h"
 #include "messages/sea_state.h"
 #include "messages/status.h"
 
@@ -148,6 +149,13 @@ void visit_components(State& state, Visitor&& visitor) {
   visitor(state.angular_frequency);
   visitor(state.direction);
   visitor(state.phase);
+}
+
+// A grid consists of a header and its elevations.
+template <MaybeConst<SeaGridHeader> Header, typename Visitor>
+void visit_header(Header& header, Visitor& visitor) {
+  visitor(header.utime, header.instance_id, header.origin, header.spacing, header.level, header.periodic,
+          header.rows, header.columns);
 }
 
 // A status consists of a header, its strings and a trailer.

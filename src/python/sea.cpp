@@ -121,8 +121,8 @@ py::object motion(py::handle self, py::handle x, py::handle y, py::handle z, py:
 
 QuerySea sea_of_file(const std::filesystem::path& path) {
   const SceneDescription description = value_or_throw(read_scene_file(path));
-  if (description.waves_received) {
-    throw InputException({path.string(), "waves = \"received\"", "the wave systems themselves",
+  if (description.sea_messages != SeaMessages::kNone) {
+    throw InputException({path.string(), to_string(description.sea_messages), "the wave systems themselves",
                           "no messages are received in a query", "Describe the sea by Sea(waves=...)"});
   }
   return value_or_throw(QuerySea::make(description.sea, description.water, description.current_profile));

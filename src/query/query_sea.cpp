@@ -51,8 +51,8 @@ Expected<QuerySea> QuerySea::parse(std::string_view text, const std::string& nam
                                    const std::filesystem::path& directory) {
   const Expected<SceneDescription> description = parse_water(text, name, directory);
   if (!description) return make_error(description.error());
-  if (description->waves_received) {
-    return make_error({name, "waves = \"received\"", "the wave systems themselves",
+  if (description->sea_messages != SeaMessages::kNone) {
+    return make_error({name, to_string(description->sea_messages), "the wave systems themselves",
                        "no messages are received in a query", "List the systems, or leave waves out"});
   }
   Expected<QuerySea> sea = make(description->sea, description->water, description->current_profile);

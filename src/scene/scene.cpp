@@ -267,14 +267,14 @@ Expected<Scene> Scene::prepare(const SceneDescription& description, const Prepar
   Scene scene;
   scene.name_ = description.name;
   scene.water_ = description.water;
-  scene.receives_sea_ = description.waves_received;
+  scene.sea_messages_ = description.sea_messages;
   scene.text_fingerprint_ = description.text_fingerprint;
   scene.current_ = {description.sea.current_W, description.current_profile};
   Expected<std::shared_ptr<const PreparedSea>> sea = make_sea(description);
   if (!sea) return make_error(std::move(sea.error()));
   scene.sea_ = *std::move(sea);
   if (scene.sea_ != nullptr) scene.wave_systems_ = report_wave_systems(description.sea, *scene.sea_);
-  const bool has_waves = scene.sea_ != nullptr || scene.receives_sea_;
+  const bool has_waves = scene.sea_ != nullptr || scene.receives_sea();
   if (has_waves) {
     for (const BodyDescription& body : description.bodies) {
       if (std::optional<Error> error = error_in_waves(body)) return make_error(*std::move(error));

@@ -74,8 +74,10 @@ class Scene {
   // are received.
   const Sea* sea() const { return sea_ == nullptr ? nullptr : sea_.get(); }
   const std::shared_ptr<const PreparedSea>& prepared_sea() const { return sea_; }  // of sea()
-  // Does the sea come in messages (waves = "received")?
-  bool receives_sea() const { return receives_sea_; }
+  // Does the sea come in messages, and are they grids?
+  bool receives_sea() const { return sea_messages_ != SeaMessages::kNone; }
+  bool receives_grids() const { return sea_messages_ == SeaMessages::kGrids; }
+  SeaMessages sea_messages() const { return sea_messages_; }
   // One per wave system; none if the water is at rest.
   const std::vector<WaveSystemReport>& wave_systems() const { return wave_systems_; }
   const Vec3& current_W() const { return current_.velocity_W; }  // [m/s], at the level: it carries the waves
@@ -98,7 +100,7 @@ class Scene {
   std::string name_;
   Water water_;
   std::shared_ptr<const PreparedSea> sea_;
-  bool receives_sea_ = false;
+  SeaMessages sea_messages_ = SeaMessages::kNone;
   std::vector<WaveSystemReport> wave_systems_;
   Current current_;
   std::uint64_t text_fingerprint_ = 0;

@@ -43,7 +43,7 @@ void read_water(const toml::table& toml, SceneDescription& scene, const std::fil
   scene.water_location = context.location(toml.source());
   table.read("level", scene.water.level, NumberRange::any("m"));
   table.read("density", scene.water.density, NumberRange::from_zero("kg/m^3"));
-  scene.waves_received = parse_sea(table, directory, context, scene.sea);
+  scene.sea_messages = parse_sea(table, directory, context, scene.sea);
   parse_current(table, context, scene.sea.current_W, scene.current_profile);
   parse_layers(table, context, scene.water);
   table.finish();

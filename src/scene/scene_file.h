@@ -165,7 +165,7 @@ struct SceneDescription {
   Water water;
   SeaDescription sea;              // without wave systems: water at rest, or with a current
   CurrentProfile current_profile;  // sea.current_W is its velocity at the level; empty: there is none
-  bool waves_received = false;  // waves = "received": the sea comes in messages, `sea` has the current alone
+  SeaMessages sea_messages = SeaMessages::kNone;  // those that the sea comes in; `sea` has the current alone
   // A hash of what the text states besides [body.client], names of files and comments; 0 without a text.
   std::uint64_t text_fingerprint = 0;
   std::string water_location;  // of [water]: "scene.toml:3", for errors; empty without it

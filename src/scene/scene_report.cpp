@@ -199,7 +199,9 @@ Facts water_facts(const Scene& scene) {
 
 void add_sea(const Scene& scene, Facts& facts) {
   if (scene.receives_sea()) {
-    facts.heading("").heading("sea  received in messages").add("sea", Json{{"received", true}});
+    const bool grids = scene.receives_grids();
+    facts.heading("").heading(grids ? "sea  received on grids" : "sea  received in messages");
+    facts.add("sea", grids ? Json{{"received", true}, {"grid", true}} : Json{{"received", true}});
   } else if (scene.sea() != nullptr) {
     facts.heading("").include("sea", sea_facts(*scene.sea(), scene.wave_systems()));
   } else {

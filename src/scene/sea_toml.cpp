@@ -157,7 +157,7 @@ void read_wave_systems(TomlTable& water, const std::filesystem::path& directory,
   }
   const toml::array* array = waves->as_array();
   if (array == nullptr || !(array->empty() || array->is_homogeneous<toml::table>())) {
-    water.fail_at("waves", "a table [[water.waves]] for each wave system, or \"received\"");
+    water.fail_at("waves", "a table [[water.waves]] for each wave system, \"received\", or \"grid\"");
     return;
   }
   for (const toml::node& element : *array) {
@@ -168,35 +168,41 @@ void read_wave_systems(TomlTable& water, const std::filesystem::path& directory,
 }
 
 // Refuses the keys whose values come with a received sea.
-void refuse_keys_of_received_sea(TomlTable& water) {
+void refuse_keys_of_received_sea(TomlTable& water, SeaMessages messages) {
   for (const std::string_view key : {"depth", "wave_pressure", "time_origin", "ramp"}) {
     if (!water.has(key)) continue;
-    water.fail_at(key, "no " + std::string(key) + " with waves = \"received\"",
-                  "the message of the sea says it", "Remove it");
+    water.fail_at(key, "no " + std::string(key) + " with " + to_string(messages),
+                  messages == SeaMessages::kGrids
+                      ? "a grid is the surface at its time, over hydrostatic pressure"
+                      : "the message of the sea says it",
+                  "Remove it");
   }
 }
 
-bool waves_are_received(TomlTable& water) {
+SeaMessages sea_messages(TomlTable& water) {
   const toml::node* waves = water.node("waves");
   const toml::value<std::string>* text = waves == nullptr ? nullptr : waves->as_string();
-  return text != nullptr && text->get() == "received";
+  if (text == nullptr) return SeaMessages::kNone;
+  if (text->get() == "received") return SeaMessages::kComponents;
+  return text->get() == "grid" ? SeaMessages::kGrids : SeaMessages::kNone;
 }
 
 }  // namespace
 
-bool parse_sea(TomlTable& water, const std::filesystem::path& directory, SceneParseContext& context,
-               SeaDescription& sea) {
+SeaMessages parse_sea(TomlTable& water, const std::filesystem::path& directory, SceneParseContext& context,
+                      SeaDescription& sea) {
   read_depth(water, sea.depth);
   if (const auto chosen = water.choice("wave_pressure", kPressureNames)) sea.pressure = kPressures[*chosen];
   water.read("time_origin", sea.time_origin, "us");
   water.read("ramp", sea.ramp, sea_ranges::kRamp);
-  if (waves_are_received(water)) {
-    refuse_keys_of_received_sea(water);
+  const SeaMessages messages = sea_messages(water);
+  if (messages != SeaMessages::kNone) {
+    refuse_keys_of_received_sea(water, messages);
     sea = {};
-    return true;
+    return messages;
   }
   read_wave_systems(water, directory, context, sea.systems);
-  return false;
+  return messages;
 }
 
 }  // namespace buoyancy

@@ -10,8 +10,8 @@ namespace buoyancy {
 
 // Reads `depth`, `wave_pressure`, `time_origin`, `ramp` and `waves`, and the files of components that `waves`
 // names, relative to `directory`. Errors go into the context. The sea as a whole is checked by
-// Sea::make(). Returns true if waves = "received".
-bool parse_sea(TomlTable& water, const std::filesystem::path& directory, SceneParseContext& context,
-               SeaDescription& sea);
+// Sea::make(). Returns which messages bring the sea, if it is not described.
+SeaMessages parse_sea(TomlTable& water, const std::filesystem::path& directory, SceneParseContext& context,
+                      SeaDescription& sea);
 
 }  // namespace buoyancy

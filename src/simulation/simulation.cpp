@@ -69,7 +69,7 @@ Error not_ok_error(const SimulatedBody& body, double time) {
       break;
     case BodyStatus::kNoSea:
       error.cause = "the scene's waves are received, and buoyancyd has not received a sea for this time";
-      error.hint = "Start what publishes BUOYANCY_SEA before the client";
+      error.hint = "Start what publishes BUOYANCY_SEA, or BUOYANCY_SEA_GRID, before the client";
       break;
     case BodyStatus::kBadCondition:
       error.cause = "buoyancyd has received a condition of a compartment or tank that it cannot use";

@@ -29,12 +29,7 @@ constexpr double kRoundingMargin = 1.0 + 1e-12;
 PreparedSea::PreparedSea(Sea sea) : Sea(std::move(sea)), expansion_(*this) {
   assert(!is_still());
   if (!surfaces().empty()) {
-    auto& [elevation, slope, curvature] = expansion_.amplitude_sums;
-    elevation = max_elevation();
-    for (const TimedElevation& surface : surfaces()) {
-      slope = std::max(slope, surface.spline->max_slope());
-      curvature = std::max(curvature, surface.spline->max_curvature());
-    }
+    set_bounds_of_surfaces();
     return;
   }
   const PreparedComponents& components = prepared();
@@ -49,6 +44,21 @@ PreparedSea::PreparedSea(Sea sea) : Sea(std::move(sea)), expansion_(*this) {
     }
     max_gradients_.push_back(kRoundingMargin * sum);
     if (-z >= deepest) break;
+  }
+}
+
+void PreparedSea::set_surfaces(std::span<const TimedElevation> surfaces, double level) {
+  Sea::set_surfaces(surfaces, level);
+  set_bounds_of_surfaces();
+}
+
+void PreparedSea::set_bounds_of_surfaces() {
+  auto& [elevation, slope, curvature] = expansion_.amplitude_sums;
+  elevation = max_elevation();
+  slope = curvature = 0.0;
+  for (const TimedElevation& surface : surfaces()) {
+    slope = std::max(slope, surface.spline->max_slope());
+    curvature = std::max(curvature, surface.spline->max_curvature());
   }
 }
 

@@ -1,6 +1,7 @@
 // A sea with what the loads of bodies need of it: prepared once per sea, immutable, shared by all threads.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "wave_loads/sea_expansion.h"
@@ -25,7 +26,14 @@ class PreparedSea : public Sea {
   // O(1).
   double max_gradient(double z) const;
 
+  // Replaces the surfaces and the level [m] of a sea on grids, while nobody else refers to it. No heap
+  // allocation.
+  void set_surfaces(std::span<const TimedElevation> surfaces, double level);
+  void release_surfaces() { Sea::release_surfaces(); }  // until set_surfaces() is called
+
  private:
+  void set_bounds_of_surfaces();
+
   SeaExpansion expansion_;
   std::vector<double> max_gradients_;  // at heights that descend from 0, see depth_of() in the source
 };

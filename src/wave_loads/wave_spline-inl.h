@@ -239,7 +239,7 @@ class PatchesOnSpline : public PlacedPatches<Number> {
     Base::start(patches, patch);
     const ElevationBlend& surface = query.sea->surface();
     count_ = surface.count;
-    mean_elevation_ = query.mean_elevation;
+    mean_elevation_ = query.mean_elevation - surface.rise;
     rounding_ = growth_ = 0.0;
     for (std::size_t n = 0; n < count_; ++n) {
       const ElevationSpline& spline = *surface.parts[n].spline;
@@ -248,6 +248,7 @@ class PatchesOnSpline : public PlacedPatches<Number> {
       rounding_ = std::max(rounding_, spline.rounding(largest, 0.0));
       growth_ = std::max(growth_, ElevationSpline::kGrowth / spline.min_spacing());
     }
+    rounding_ += 0x1p-50 * std::abs(surface.rise);
   }
 
   bool full() const { return false; }

@@ -288,6 +288,7 @@ Expected<void> ElevationSpline::set(const ElevationGrid<Number>& grid) {
 
 template Expected<void> ElevationSpline::set(const ElevationGrid<float>& grid);
 template Expected<void> ElevationSpline::set(const ElevationGrid<double>& grid);
+template Expected<void> ElevationSpline::set(const ElevationGrid<BigEndianFloat>& grid);
 
 void ElevationSpline::filter_rows() {
   constexpr std::size_t kTogether = 8;  // so that their chains of operations overlap
@@ -464,7 +465,7 @@ bool ElevationBlend::holds(const HorizontalBox& box) const {
 }
 
 ElevationDerivatives ElevationBlend::at(double x1, double x2) const {
-  ElevationDerivatives sum;
+  ElevationDerivatives sum{.eta = rise};
   for (std::size_t n = 0; n < count; ++n) {
     const double share = parts[n].share;
     const ElevationDerivatives of_part = parts[n].spline->at(x1, x2);
@@ -479,9 +480,9 @@ ElevationDerivatives ElevationBlend::at(double x1, double x2) const {
 }
 
 ElevationBounds ElevationBlend::bounds_over(const HorizontalBox& box) const {
-  if (count == 1) return parts[0].spline->bounds_over(box);
-  double low = 0.0;
-  double high = 0.0;
+  if (count == 1 && rise == 0.0) return parts[0].spline->bounds_over(box);
+  double low = rise;
+  double high = rise;
   double third = 0.0;
   for (std::size_t n = 0; n < count; ++n) {
     const ElevationBounds of_part = parts[n].spline->bounds_over(box);

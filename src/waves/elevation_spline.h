@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -18,8 +19,19 @@
 
 namespace buoyancy {
 
+// A float as it is in messages.
+struct BigEndianFloat {
+  std::array<std::uint8_t, 4> bytes{};
+
+  explicit operator double() const {
+    const std::uint32_t bits = (std::uint32_t{bytes[0]} << 24U) | (std::uint32_t{bytes[1]} << 16U) |
+                               (std::uint32_t{bytes[2]} << 8U) | std::uint32_t{bytes[3]};
+    return static_cast<double>(std::bit_cast<float>(bits));
+  }
+};
+
 // Samples of an elevation: number 0 is at `origin`, the next one is beside it along e1.
-// Number: float or double.
+// Number: float, double or BigEndianFloat.
 template <typename Number>
 struct ElevationGrid {
   std::span<const Number> elevations;  // [m], over the level, row after row; within kMaxGridElevation of 0
@@ -159,7 +171,7 @@ class ElevationSpline {
   std::vector<ElevationBounds> bounds_;  // level after level
 };
 
-// The elevation at one time: that of a spline, or of two, with shares that add up to 1.
+// The elevation at one time: that of a spline, or of two, with shares that add up to 1, over another level.
 struct ElevationBlend {
   struct Part {
     const ElevationSpline* spline = nullptr;
@@ -167,6 +179,7 @@ struct ElevationBlend {
   };
   std::array<Part, 2> parts;
   std::size_t count = 0;  // of the parts; 0: none
+  double rise = 0.0;      // [m], added to their sum
 
   bool holds(const HorizontalBox& box) const;
   ElevationDerivatives at(double x1, double x2) const;

@@ -197,16 +197,23 @@ Expected<Sea> Sea::make(const SeaDescription& description, const Water& water) {
   return sea;
 }
 
-Sea Sea::of_surfaces(std::vector<TimedElevation> surfaces, const Water& water) {
-  assert(surfaces.size() == 1 || (surfaces.size() == 2 && surfaces[0].utime < surfaces[1].utime));
+Sea Sea::of_surfaces(std::span<const TimedElevation> surfaces, const Water& water) {
   Sea sea;
   sea.water_ = water;
   sea.axes_ = horizontal_axes(water.up_W);
   sea.depth_ = std::numeric_limits<double>::infinity();
   sea.pressure_ = WavePressure::kHydrostatic;
-  sea.time_origin_ = surfaces[0].utime;
-  sea.surfaces_ = std::move(surfaces);
+  constexpr std::size_t kMaxSurfaces = 2;
+  sea.surfaces_.reserve(kMaxSurfaces);
+  sea.set_surfaces(surfaces, water.level);
   return sea;
+}
+
+void Sea::set_surfaces(std::span<const TimedElevation> surfaces, double level) {
+  assert(surfaces.size() == 1 || (surfaces.size() == 2 && surfaces[0].utime < surfaces[1].utime));
+  water_.level = level;
+  time_origin_ = surfaces[0].utime;
+  surfaces_.assign(surfaces.begin(), surfaces.end());
 }
 
 double Sea::significant_wave_height() const {
@@ -220,7 +227,8 @@ double Sea::max_elevation() const {
   for (const double amplitude : prepared_.amplitude) sum += amplitude;
   for (const TimedElevation& surface : surfaces_) {
     const ElevationBounds bounds = surface.spline->bounds();
-    sum = std::max({sum, -static_cast<double>(bounds.low), static_cast<double>(bounds.high)});
+    sum = std::max({sum, -(static_cast<double>(bounds.low) + surface.rise),
+                    static_cast<double>(bounds.high) + surface.rise});
   }
   return sum;
 }

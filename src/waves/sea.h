@@ -14,7 +14,9 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/error.h"
@@ -54,6 +56,7 @@ struct PreparedComponents {
 struct TimedElevation {
   std::int64_t utime = 0;  // [us]
   std::shared_ptr<const ElevationSpline> spline;
+  double rise = 0.0;  // [m], added to its elevations, which are then over the level of the water
 };
 
 class Sea {
@@ -63,8 +66,12 @@ class Sea {
   static Expected<Sea> make(const SeaDescription& description, const Water& water);
   // A sea of deep water whose surface is known on grids instead of by components, without a current: one
   // surface at all times, or the second one at a later utime, with elevations linear in time from one to the
-  // other and at rest before and after. Its pressure is hydrostatic.
-  static Sea of_surfaces(std::vector<TimedElevation> surfaces, const Water& water);
+  // other and at rest before and after. Its pressure is hydrostatic. The water moves upwards as its surface
+  // does between the two, and up to the time of the second one.
+  static Sea of_surfaces(std::span<const TimedElevation> surfaces, const Water& water);
+  static Sea of_surfaces(std::initializer_list<TimedElevation> surfaces, const Water& water) {
+    return of_surfaces(std::span(surfaces.begin(), surfaces.size()), water);
+  }
 
   const Water& water() const { return water_; }
   const HorizontalAxes& axes() const { return axes_; }
@@ -94,6 +101,11 @@ class Sea {
 
   // Amplitudes grow from 0 at t = 0 to their value at t = ramp, as (1 - cos(pi t / ramp)) / 2.
   double amplitude_factor(double t) const;
+
+ protected:
+  // Replaces the surfaces and the level [m] of a sea that of_surfaces() made. No heap allocation.
+  void set_surfaces(std::span<const TimedElevation> surfaces, double level);
+  void release_surfaces() { surfaces_.clear(); }
 
  private:
   Sea() = default;

@@ -74,4 +74,11 @@ struct SeaDescription {
   std::vector<WaveSystem> systems;
 };
 
+// The messages in which a scene says that its sea comes.
+enum class SeaMessages : std::uint8_t { kNone, kComponents, kGrids };
+// As the scene file says it, such as `waves = "grid"`. Precondition: not kNone.
+inline constexpr const char* to_string(SeaMessages messages) {
+  return messages == SeaMessages::kGrids ? "waves = \"grid\"" : "waves = \"received\"";
+}
+
 }  // namespace buoyancy

@@ -26,9 +26,9 @@ DoubleDouble exactly(std::int64_t whole) {
                  static_cast<double>(whole - high * kHalf));
 }
 
-double seconds_between(const TimedElevation& earlier, const TimedElevation& later) {
-  const DoubleDouble microseconds = exactly(later.utime) - exactly(earlier.utime);
-  return 1e-6 * microseconds.hi;
+// In seconds, of two times in microseconds.
+DoubleDouble difference(std::int64_t later, std::int64_t earlier) {
+  return (exactly(later) - exactly(earlier)) * reciprocal({1e6, 0.0});
 }
 
 }  // namespace
@@ -41,8 +41,7 @@ SeaSnapshot::SeaSnapshot(const Sea& sea, std::int64_t utime, double lead_time)
 }
 
 void SeaSnapshot::set_time(std::int64_t utime, double lead_time) {
-  const DoubleDouble microseconds = exactly(utime) - exactly(sea_->time_origin());
-  const DoubleDouble t = microseconds * reciprocal({1e6, 0.0}) + DoubleDouble{lead_time, 0.0};
+  const DoubleDouble t = difference(utime, sea_->time_origin()) + DoubleDouble{lead_time, 0.0};
   const PreparedComponents& components = sea_->prepared();
   amplitude_factor_ = sea_->amplitude_factor(t.hi);
   for (std::size_t i = 0; i < phases_.size(); ++i) {
@@ -55,11 +54,29 @@ void SeaSnapshot::set_time(std::int64_t utime, double lead_time) {
 // t: [s], from the time of the first surface.
 void SeaSnapshot::set_surface(double t) {
   const std::vector<TimedElevation>& surfaces = sea_->surfaces();
-  const double share =
-      surfaces.size() == 1 ? 0.0 : std::clamp(t / seconds_between(surfaces[0], surfaces[1]), 0.0, 1.0);
+  const double between = surfaces.size() == 1 ? 0.0 : difference(surfaces[1].utime, surfaces[0].utime).hi;
+  const double share = between == 0.0 ? 0.0 : std::clamp(t / between, 0.0, 1.0);
+  time_between_ = t > 0.0 && t <= between ? between : 0.0;
   surface_.count = 0;
-  if (share < 1.0) surface_.parts[surface_.count++] = {surfaces[0].spline.get(), 1.0 - share};
-  if (share > 0.0) surface_.parts[surface_.count++] = {surfaces[1].spline.get(), share};
+  surface_.rise = 0.0;
+  const auto add = [this](const TimedElevation& surface, double of_surface) {
+    if (of_surface == 0.0) return;
+    surface_.parts[surface_.count++] = {surface.spline.get(), of_surface};
+    surface_.rise += of_surface * surface.rise;
+  };
+  add(surfaces[0], 1.0 - share);
+  add(surfaces.back(), share);
+}
+
+// [m/s], between two surfaces on grids.
+double SeaSnapshot::surface_velocity(double x1, double x2) const {
+  const TimedElevation& earlier = sea_->surfaces().front();
+  const TimedElevation& later = sea_->surfaces().back();
+  const HorizontalBox place{{x1, x2}, {x1, x2}};
+  if (!earlier.spline->holds(place) || !later.spline->holds(place)) return 0.0;
+  const double rise =
+      later.spline->at(x1, x2).eta - earlier.spline->at(x1, x2).eta + (later.rise - earlier.rise);
+  return rise / time_between_;
 }
 
 double SeaSnapshot::phase_at(std::size_t i, double x1, double x2) const {
@@ -99,11 +116,7 @@ WaterAtPoint SeaSnapshot::at(const Vec3& p_W) const {
   WaterAtPoint point;
   point.elevation = elevation(x1, x2);
   point.height = zeta - point.elevation;
-  if (surface_.count == 2) {
-    const std::vector<TimedElevation>& surfaces = sea_->surfaces();
-    const double rise = surfaces[1].spline->at(x1, x2).eta - surfaces[0].spline->at(x1, x2).eta;
-    point.velocity_W = rise / seconds_between(surfaces[0], surfaces[1]) * water.up_W;
-  }
+  if (time_between_ > 0.0) point.velocity_W = surface_velocity(x1, x2) * water.up_W;
   const double s = std::min(point.height, 0.0);
   const double column = h + point.elevation;
   const double stretched = std::isinf(h) ? s : column > 0.0 ? std::max(h * s / column, -h) : -h;

@@ -40,11 +40,15 @@ class SeaSnapshot {
   const std::vector<double>& phases() const { return phases_; }
   // Of a sea on grids, otherwise without parts.
   const ElevationBlend& surface() const { return surface_; }
+  // [s], of the two surfaces on grids between which this time is, or whose later one has it; 0: there are no
+  // two.
+  double time_between_surfaces() const { return time_between_; }
 
   // [m], over the level. x1, x2: [m], along the horizontal axes from the world's origin. Phases are exact to
   // 1e-15 of a turn out to 1e9 wavelengths. Not a number where a sea on grids has no surface.
   double elevation(double x1, double x2) const;
-  // Of a sea on grids, the velocity is that of the surface, upwards, and the acceleration 0.
+  // Of a sea on grids, the velocity is that of the surface, upwards, where both grids have one, and the
+  // acceleration 0.
   WaterAtPoint at(const Vec3& p_W) const;
   // Sets out[i] to the phase of component i at this place [rad], in [-pi, pi].
   void phases_at(double x1, double x2, std::vector<double>& out) const;
@@ -52,11 +56,13 @@ class SeaSnapshot {
  private:
   double phase_at(std::size_t component, double x1, double x2) const;  // [rad]
   void set_surface(double t);
+  double surface_velocity(double x1, double x2) const;
 
   const Sea* sea_;
   double amplitude_factor_ = 1.0;
   std::vector<double> phases_;
   ElevationBlend surface_;
+  double time_between_ = 0.0;
 };
 
 }  // namespace buoyancy

@@ -36,7 +36,7 @@ TEST(Simulation, EndsWithReasonAndHintIfAWrenchIsNotOk) {
       error_of(BodyStatus::kNoSea),
       "body 1 (crate) at 0.000000 s: status NO_SEA; expected status OK. Likely cause: the scene's waves "
       "are received, and buoyancyd has not received a sea for this time. Start what publishes "
-      "BUOYANCY_SEA before the client.");
+      "BUOYANCY_SEA, or BUOYANCY_SEA_GRID, before the client.");
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ struct GridSea {
   GridSea(const SampledGrid& first, const SampledGrid& second, const Water& water = {})
       : GridSea({{0, spline_of(first)}, {1'000'000, spline_of(second)}}, 500'000, water) {}
   GridSea(std::vector<TimedElevation> surfaces, std::int64_t utime, const Water& water)
-      : prepared(Sea::of_surfaces(std::move(surfaces), water)), now(prepared, utime) {}
+      : prepared(Sea::of_surfaces(surfaces, water)), now(prepared, utime) {}
   GridSea(const GridSea&) = delete;
   GridSea& operator=(const GridSea&) = delete;
 

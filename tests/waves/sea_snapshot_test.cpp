@@ -297,8 +297,8 @@ TEST(SeaSnapshot, IsLinearInTimeBetweenTwoSurfaces) {
     const WaterAtPoint point = now.at({3.5, 7.25, 1.0});
     EXPECT_NEAR(point.height, 1.0 - water.level - between(clamped, 3.5, 7.25), 1e-12);
     EXPECT_NEAR(point.pressure, -point.height * water.density * water.gravity, 1e-6);
-    // The surface moves between the two times alone.
-    const double rise = share > 0.0 && share < 1.0 ? (0.2 * 7.25 - 1.0 - 0.1 * 3.5) / 0.4 : 0.0;
+    // The surface moves between the two times, and until the later one.
+    const double rise = share > 0.0 && share <= 1.0 ? (0.2 * 7.25 - 1.0 - 0.1 * 3.5) / 0.4 : 0.0;
     EXPECT_NEAR((point.velocity_W - rise * Vec3::UnitZ()).norm(), 0.0, 1e-12);
     EXPECT_EQ(point.acceleration_W, Vec3::Zero());
   }

@@ -184,7 +184,8 @@ std::shared_ptr<const BodyCondition> BusMonitor::condition(std::size_t body) con
 }
 
 std::shared_ptr<const SeaPeriod> BusMonitor::sea_period() const {
-  const std::shared_ptr<const SeaPeriod>* period = request_time_ ? seas_.at(request_time_->utime) : nullptr;
+  const std::shared_ptr<const SeaPeriod>* period =
+      request_time_ ? seas_.at(request_time_->utime, request_time_->lead_time) : nullptr;
   return period == nullptr ? nullptr : *period;
 }
 

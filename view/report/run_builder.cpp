@@ -188,16 +188,20 @@ void RunBuilder::count_evaluation(ShownBody& shown, const Body& body, const Vali
   }
 }
 
+std::shared_ptr<const SeaPeriod> RunBuilder::sea_of(const RecordedState& recorded) const {
+  return has_waves(scene_) && !scene_.receives_grids() ? water_.sea_at(recorded.utime, recorded.lead_time)
+                                                       : nullptr;
+}
+
 std::shared_ptr<RowLoads> RunBuilder::make_loads(BodyRun& run, const Body& body,
                                                  const RecordedState& recorded) const {
   if (!has_loads(body)) return nullptr;
   if (!recorded.velocities && body.hydrodynamics != nullptr) run.loads_without_velocities = true;
-  return std::make_shared<RowLoads>(
-      RowLoads{.utime = recorded.utime,
-               .lead_time = recorded.lead_time,
-               .state = recorded.state,
-               .sea = has_waves(scene_) ? water_.sea_at(recorded.utime) : nullptr,
-               .recorded = std::nullopt});
+  return std::make_shared<RowLoads>(RowLoads{.utime = recorded.utime,
+                                             .lead_time = recorded.lead_time,
+                                             .state = recorded.state,
+                                             .sea = sea_of(recorded),
+                                             .recorded = std::nullopt});
 }
 
 std::shared_ptr<RowLoads> RunBuilder::add(const RecordedState& recorded) {
@@ -251,7 +255,7 @@ std::shared_ptr<RowLoads> RunBuilder::add(const RecordedState& recorded) {
   row[kPitch] = body_attitude.pitch;
   row[kForce] = to_vec3(wrench.force).norm();
   row[kTorque] = to_vec3(wrench.torque).norm();
-  const std::shared_ptr<const SeaPeriod> sea = has_waves(scene_) ? water_.sea_at(recorded.utime) : nullptr;
+  const std::shared_ptr<const SeaPeriod> sea = sea_of(recorded);
   row[kSeaTime] = sea ? sea_time(*sea, recorded.utime, recorded.lead_time) : kUnknown;
   row[kSea] = sea ? place_of(sea) : kUnknown;
   std::shared_ptr<RowLoads> loads = make_loads(run_.bodies[*index], body, recorded);

@@ -56,7 +56,8 @@ class RunBuilder {
   // Adds a row, in any order. Returns nullptr for a body that is not shown or has no loads; otherwise the
   // row's loads: set `recorded` in them, before finish(), to what the file holds; others are computed.
   std::shared_ptr<RowLoads> add(const RecordedState& recorded);
-  // Receives a sea_state_t, for a scene that receives its sea: wrenches of rows added later are those in it.
+  // Receives a sea_state_t or sea_grid_t, for a scene that receives it: wrenches of rows added later are
+  // those in it. Rows in a sea on grids are shown without it: every step has another one.
   void receive_sea(std::int64_t timestamp, Bytes message);
   // Receives a body_condition_t, for a scene with compartments or tanks. It holds from its utime on.
   void receive_condition(std::int64_t timestamp, Bytes message);
@@ -94,6 +95,7 @@ class RunBuilder {
   ShownBody* show(std::size_t index);
   // Sets the rigid body, with the liquids of this condition; nullptr: those of the scene file.
   void make_rigid(const Body& body, const std::shared_ptr<const BodyCondition>& condition, ShownBody& shown);
+  std::shared_ptr<const SeaPeriod> sea_of(const RecordedState& recorded) const;
   double place_of(const std::shared_ptr<const SeaPeriod>& sea);  // in run_.seas, see kSea
   void count_evaluation(ShownBody& shown, const Body& body, const ValidatedPose& pose) const;
   std::shared_ptr<RowLoads> make_loads(BodyRun& run, const Body& body, const RecordedState& recorded) const;
