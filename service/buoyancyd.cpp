@@ -76,7 +76,7 @@ int run(int argc, char** argv) {
   Expected<PoseChannels> poses =
       resolve_pose_channels(options.poses, *scene,
                             {channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
-                             channels.sea, channels.condition, channels.status});
+                             channels.sea, channels.sea_grid, channels.condition, channels.status});
   if (!poses) {
     print_error(app, poses.error());
     return kUsageError;

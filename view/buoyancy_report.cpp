@@ -51,6 +51,7 @@ decimated; its extremes are kept.
   add_wrenches_channel_option(app, arguments.file.wrenches_channel);
   add_loads_channel_option(app, arguments.file.loads_channel);
   add_sea_channel_option(app, arguments.file.sea_channel);
+  add_sea_grid_channel_option(app, arguments.file.sea_grid_channel);
   add_condition_channel_option(app, arguments.file.condition_channel);
   add_status_channel_option(app, arguments.file.status_channel);
   add_viewer_options(app, arguments.poses);
@@ -112,7 +113,8 @@ int report_main(int argc, char** argv) {
   Expected<PoseChannels> poses = resolve_pose_channels(
       arguments.poses, *scene,
       {arguments.file.states_channel, arguments.file.wrenches_channel, arguments.file.loads_channel,
-       arguments.file.sea_channel, arguments.file.condition_channel, arguments.file.status_channel});
+       arguments.file.sea_channel, arguments.file.sea_grid_channel, arguments.file.condition_channel,
+       arguments.file.status_channel});
   if (!poses) return fail(poses.error(), kUsageError);
   arguments.file.poses = *std::move(poses);
 

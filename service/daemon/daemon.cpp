@@ -35,6 +35,8 @@ constexpr int kMaxDrained = 4096;  // mode latest: bounds the time that a flood 
 constexpr int kIgnored = -1;       // a descriptor that poll() skips
 constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kMaxWait = 3600.0;  // [s]
+// Two grids of the sea of 1024 x 1024 samples, or many usual ones.
+constexpr std::size_t kUsualGridBytes = std::size_t{8} << 20U;
 constexpr std::size_t kMaxSessions = RequestHandlerOptions{}.max_sessions;
 
 Deadline end_of_slice() {
@@ -138,11 +140,19 @@ Expected<void> Daemon::subscribe() {
   if (!subscribed) return subscribed;
   subscribed = connection_.subscribe(
       channels_.sea, [this](Bytes message, std::string_view) { guard([&] { on_sea(message); }); });
+  if (subscribed) subscribed = subscribe_to_grids();
   if (subscribed) subscribed = subscribe_to_conditions();
   if (!subscribed) return subscribed;
   return connection_.subscribe(channels_.status, [this](Bytes status, std::string_view) {
     guard([&] { instances_.observe(status); });
   });
+}
+
+Expected<void> Daemon::subscribe_to_grids() {
+  if (grids_ || !scene_->receives_grids()) return {};
+  grids_.emplace();
+  return connection_.subscribe(channels_.sea_grid,
+                               [this](Bytes message, std::string_view) { guard([&] { on_grid(message); }); });
 }
 
 Expected<void> Daemon::subscribe_to_conditions() {
@@ -163,7 +173,8 @@ void Daemon::prepare_for_messages() {
   }
   const LargestMessages messages = largest_messages(*scene_, channels_);
   const std::size_t request_bytes = std::min(messages.request.bytes, kMaxMessageBytes);
-  const auto buffer = connection_.reserve_receive_buffer(request_bytes);
+  const std::size_t grid_bytes = scene_->receives_grids() ? kUsualGridBytes : 0;
+  const auto buffer = connection_.reserve_receive_buffer(std::max(request_bytes, grid_bytes));
   if (!buffer) return;
   receive_buffer_limit_ = buffer_limit(*buffer, request_bytes);
   for (const Warning& warning : size_warnings(messages, *buffer)) spdlog::warn("{}", warning.message());
@@ -174,16 +185,20 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
   // Without a watchdog the timer is not needed: its interval is long enough to cost nothing.
   const auto watchdog = SystemdNotifier::watchdog_interval();
   const UniqueFd watchdog_timer = make_timer(watchdog.value_or(std::chrono::hours(1)));
-  std::array<pollfd, 6> descriptors{
-      pollfd{termination.fileno(), POLLIN, 0},   pollfd{reload.fileno(), POLLIN, 0},
-      pollfd{loader_.fileno(), POLLIN, 0},       pollfd{status_timer.value(), POLLIN, 0},
-      pollfd{watchdog_timer.value(), POLLIN, 0}, pollfd{connection_.fileno(), POLLIN, 0}};
-  const auto& [stop_signal, reload_signal, loaded, status_due, watchdog_due, messages] = descriptors;
+  if (Expected<void> subscribed = subscribe(); !subscribed) return subscribed;
+  std::array<pollfd, 7> descriptors{pollfd{grids_ ? grids_->fileno() : termination.fileno(), POLLIN, 0},
+                                    pollfd{termination.fileno(), POLLIN, 0},
+                                    pollfd{reload.fileno(), POLLIN, 0},
+                                    pollfd{loader_.fileno(), POLLIN, 0},
+                                    pollfd{status_timer.value(), POLLIN, 0},
+                                    pollfd{watchdog_timer.value(), POLLIN, 0},
+                                    pollfd{connection_.fileno(), POLLIN, 0}};
+  const auto& [grids_ready, stop_signal, reload_signal, loaded, status_due, watchdog_due, messages] =
+      descriptors;
   if (std::ranges::any_of(descriptors, [](const pollfd& descriptor) { return descriptor.fd < 0; })) {
     return make_error({"timers and signals", std::generic_category().message(errno), "a few file descriptors",
                        "too many open files", ""});
   }
-  if (Expected<void> subscribed = subscribe(); !subscribed) return subscribed;
   prepare_for_messages();
   spdlog::info(
       "ready: {}; requests on {}, responses on {}, hydrostatics on {}, loads on {}, status on {}; {}, mode "
@@ -195,6 +210,7 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
     spdlog::info("poses of body {} on {}, responses on {}", pose.body_id, pose.channel,
                  pose.force_torque_channel.empty() ? channels_.wrenches : pose.force_torque_channel);
   }
+  if (grids_) spdlog::info("grids of the sea on {}", channels_.sea_grid);
   if (receives_conditions_) {
     spdlog::info("conditions of compartments and tanks on {}", channels_.condition);
   }
@@ -206,6 +222,7 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
   while (true) {
     const bool stalled = is_stalled();
     if (faults_) descriptors.back().fd = stalled ? kIgnored : connection_.fileno();
+    descriptors.front().fd = grids_ ? grids_->fileno() : kIgnored;
     const bool works = has_work() && !stalled;
     bool handled = false;
     if (latest_.empty() && !works && !stalled) handled = connection_.handle_one_spinning();
@@ -219,6 +236,7 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
     if (stop_signal.revents != 0) break;
     if (reload_signal.revents != 0 && reload.consume()) begin_reload();
     if (loaded.revents != 0) guard([this] { end_reload(); });
+    if (grids_ready.revents != 0) guard([this] { take_grids(); });
     if (status_due.revents != 0 && consume_expiration(status_timer)) guard([&] { publish_status(); });
     if (watchdog_due.revents != 0 && consume_expiration(watchdog_timer) && watchdog) systemd_.ping_watchdog();
     if (faults_) faults_->send_due(seconds_now());
@@ -268,7 +286,8 @@ void Daemon::handle_messages(bool have_arrived) {
 }
 
 bool Daemon::has_work() const {
-  return handler_.in_progress() > 0 || !waiting_.empty();
+  if (handler_.in_progress() > 0) return true;
+  return !waiting_.empty() && (!grids_ || waiting_.first_arrival() < grids_->first_arrival());
 }
 
 bool Daemon::may_take_long(std::int64_t session_id) const {
@@ -278,7 +297,10 @@ bool Daemon::may_take_long(std::int64_t session_id) const {
 }
 
 void Daemon::work() {
-  const auto has_room = [this](std::int64_t session_id) { return handler_.has_room_for(session_id); };
+  const double first_grid = grids_ ? grids_->first_arrival() : kForever;
+  const auto has_room = [this, first_grid](std::int64_t session_id, double arrival) {
+    return handler_.has_room_for(session_id) && arrival < first_grid;
+  };
   if (waiting_.pop_next(has_room,
                         [this](Bytes request, double arrival) { handle(request, arrival, false); })) {
     return;
@@ -300,9 +322,11 @@ void Daemon::record_queue_delay() {
 
 void Daemon::on_request(Bytes request) {
   if (mode_ == ServiceMode::kLatest) return enqueue(request, seconds_now());
-  if (has_work()) {
+  const bool awaits_grid = grids_ && grids_->is_busy();
+  if (awaits_grid || has_work()) {
     const auto id = peek_request_id(request);
-    const bool waits = id && (waiting_.contains(id->session_id) || may_take_long(id->session_id)) &&
+    const bool waits = id &&
+                       (awaits_grid || waiting_.contains(id->session_id) || may_take_long(id->session_id)) &&
                        !handler_.is_retry(id->session_id, request);
     if (waits) return wait(request, seconds_now());
   }
@@ -321,8 +345,7 @@ void Daemon::on_pose(std::size_t channel, Bytes pose) {
 void Daemon::on_sea(Bytes message) {
   if (!scene_->receives_sea()) return;  // the message may be this service's own
   if (const Expected<void> received = handler_.receive_sea(message); !received) {
-    warnings_.add({"messages of the sea rejected", 1, received.error().message()}, seconds_now());
-    return;
+    return warn_of_rejected_sea(received.error());
   }
   std::shared_ptr<const SeaPeriod> sea = handler_.newest_sea();
   if (sea == newest_sea_) return;
@@ -335,6 +358,39 @@ void Daemon::on_sea(Bytes message) {
   }
   if (!detail.empty())
     warnings_.add({"seas received that are too high or too steep", 1, detail}, seconds_now());
+}
+
+void Daemon::warn_of_rejected_sea(const Error& error) {
+  warnings_.add({"messages of the sea rejected", 1, error.message()}, seconds_now());
+}
+
+void Daemon::on_grid(Bytes message) {
+  if (!scene_->receives_grids()) return;  // an earlier scene did
+  const auto header = peek_sea_grid(message);
+  const bool is_small = !header || message.size() < sea_grid_size(1, GridPreparer::kMinSamples);
+  if (is_small && !grids_->is_busy()) {
+    const Expected<void> received = handler_.receive_sea(message);
+    if (!received) warn_of_rejected_sea(received.error());
+    return;
+  }
+  if (header && grids_->push(*header, message, handler_.spare_surface(), seconds_now())) return;
+  handler_.record_rejected_sea();
+  warn_of_rejected_sea(
+      {channels_.sea_grid,
+       header ? "grids that arrive faster than they can be prepared" : to_string(header.error()),
+       header ? "25 ns per sample" : "the bytes of a sea_grid_t of this version", "",
+       header ? "Send smaller grids, around the bodies, or fewer" : ""});
+}
+
+void Daemon::take_grids() {
+  while (std::optional<GridPreparer::Prepared> grid = grids_->poll()) {
+    if (!grid->surface) {
+      handler_.record_rejected_sea();
+      warn_of_rejected_sea(grid->surface.error());
+    } else if (scene_->receives_grids()) {
+      handler_.receive_surface(grid->header, *std::move(grid->surface));
+    }
+  }
 }
 
 void Daemon::on_condition(Bytes message) {
@@ -503,6 +559,9 @@ void Daemon::prepare_for_scene() {
   prepare_for_messages();
   if (const Expected<void> subscribed = subscribe_to_conditions(); !subscribed) {
     spdlog::error("conditions are not received: {}", subscribed.error().message());
+  }
+  if (const Expected<void> subscribed = subscribe_to_grids(); !subscribed) {
+    spdlog::error("grids are not received: {}", subscribed.error().message());
   }
   publish_sea();
 }

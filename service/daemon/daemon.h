@@ -10,7 +10,9 @@
 // velocities, of bodies with drag or added mass, are logged as a warning that says why they get no load.
 //
 // In waves, the sea of the scene is published when the scene is loaded and once a second. Where the scene
-// says that waves are received, its sea is that of the messages on the same channel (SeaTimeline).
+// says that waves are received, its sea is that of the messages on the same channel (SeaTimeline). Grids come
+// on a channel of their own. Large ones are prepared by a GridPreparer; in mode lockstep, requests that
+// arrive after a grid wait for it, so that they find the sea that was sent before them.
 //
 // In a scene with compartments or tanks, messages change their condition (ConditionTimeline).
 //
@@ -42,6 +44,7 @@
 #include "scene/scene.h"
 #include "service/daemon/fault_injection.h"
 #include "service/daemon/faulty_sender.h"
+#include "service/daemon/grid_preparer.h"
 #include "service/daemon/instance_monitor.h"
 #include "service/daemon/latest_request_queue.h"
 #include "service/daemon/rate_limited_log.h"
@@ -60,6 +63,7 @@ struct ChannelNames {
   std::string hydrostatics{kHydrostaticsChannel};
   std::string loads{kLoadsChannel};
   std::string sea{kSeaChannel};
+  std::string sea_grid{kSeaGridChannel};
   std::string condition{kConditionChannel};
   std::string status{kStatusChannel};
 };
@@ -87,6 +91,7 @@ class Daemon {
  private:
   Expected<void> subscribe();
   Expected<void> subscribe_to_conditions();  // once, and if the scene has compartments or tanks
+  Expected<void> subscribe_to_grids();       // once, and if the scene receives them
   void prepare_for_messages();  // of the scene: enlarges the receive buffer, and logs what cannot arrive
   void prepare_for_scene();     // that has been loaded again: its messages, its conditions, its sea
   // Handles messages: one, or as many as fit a slice of time in mode latest or if requests are in progress.
@@ -100,6 +105,9 @@ class Daemon {
   void record_queue_delay();
   void on_request(Bytes request);
   void on_sea(Bytes message);
+  void on_grid(Bytes message);
+  void take_grids();  // that grids_ has prepared
+  void warn_of_rejected_sea(const Error& error);
   void on_condition(Bytes message);
   void on_pose(std::size_t channel, Bytes pose);  // channel: an index into poses_.channels()
   void enqueue(Bytes request, double arrival);
@@ -133,7 +141,8 @@ class Daemon {
   ServiceMode mode_;
   ChannelNames channels_;
   LcmConnection connection_;
-  bool receives_conditions_ = false;  // subscribed to
+  bool receives_conditions_ = false;   // subscribed to
+  std::optional<GridPreparer> grids_;  // nullopt: not subscribed to
   RequestHandler handler_;
   PoseRequestAdapter poses_;
   LatestRequestQueue latest_;

@@ -34,6 +34,7 @@ void add_options(CLI::App& app, DaemonOptions& options) {
   add_hydrostatics_channel_option(app, options.channels.hydrostatics);
   add_loads_channel_option(app, options.channels.loads);
   add_sea_channel_option(app, options.channels.sea);
+  add_sea_grid_channel_option(app, options.channels.sea_grid);
   add_condition_channel_option(app, options.channels.condition);
   add_status_channel_option(app, options.channels.status);
   add_options(app, options.poses);
@@ -74,7 +75,7 @@ Expected<void> check_options(const DaemonOptions& options) {
   const ChannelNames& channels = options.channels;
   if (Expected<void> checked =
           check_channels_distinct({channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
-                                   channels.sea, channels.condition, channels.status});
+                                   channels.sea, channels.sea_grid, channels.condition, channels.status});
       !checked) {
     return checked;
   }

@@ -41,12 +41,12 @@ class WaitingRequests {
     return std::ranges::find(requests_, session_id, &Request::session_id) != requests_.end();
   }
 
-  // Removes the first request of a session with may_handle(std::int64_t session_id), and calls handle(Bytes
-  // request, double arrival). False: there is none.
+  // Removes the first request with may_handle(std::int64_t session_id, double arrival), and calls
+  // handle(Bytes request, double arrival). False: there is none.
   template <typename Predicate, typename Handler>
   bool pop_next(Predicate&& may_handle, Handler&& handle) {
     const auto next = std::ranges::find_if(
-        requests_, [&](const Request& waiting) { return may_handle(waiting.session_id); });
+        requests_, [&](const Request& waiting) { return may_handle(waiting.session_id, waiting.arrival); });
     if (next == requests_.end()) return false;
     const Request request = std::move(*next);
     requests_.erase(next);
@@ -56,6 +56,7 @@ class WaitingRequests {
   }
 
   bool empty() const { return requests_.empty(); }
+  double first_arrival() const { return requests_.front().arrival; }  // [s]. Precondition: not empty
 
  private:
   struct Request {

@@ -53,7 +53,7 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, Received& rec
   if (role.copied) batch.add_copy(event.timestamp, event.channel, event.bytes);
   if (role.sea) {
     if (const Expected<void> used = received.seas.receive(event.bytes, task.scene)) {
-      batch.add_seas(event.timestamp, received.seas);
+      batch.add_seas(event.timestamp, received.seas, task.scene.receives_grids() ? event.bytes.size() : 0);
     } else {
       batch.add_rejected_sea(event.timestamp, used.error());
     }

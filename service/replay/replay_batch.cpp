@@ -20,6 +20,7 @@ ReplayBatch::ReplayBatch(const Scene& scene, const OutputLayout& layout, bool ke
 
 void ReplayBatch::start(SeaTimeline seas, ConditionTimeline conditions) {
   items_.clear();
+  grid_bytes_ = 0;
   seas_.clear();
   seas_.push_back(std::move(seas));
   conditions_ = std::move(conditions);
@@ -54,7 +55,8 @@ void ReplayBatch::add_copy(std::int64_t timestamp, std::string_view channel, Byt
   add(Kind::kCopy, timestamp, bytes).text = channel;
 }
 
-void ReplayBatch::add_seas(std::int64_t timestamp, SeaTimeline seas) {
+void ReplayBatch::add_seas(std::int64_t timestamp, SeaTimeline seas, std::size_t grid_bytes) {
+  grid_bytes_ += grid_bytes;
   add(Kind::kSeas, timestamp, {}).seas = seas_.size();
   seas_.push_back(std::move(seas));
 }

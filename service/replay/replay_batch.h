@@ -30,15 +30,15 @@ class ReplayBatch {
   void start(SeaTimeline seas, ConditionTimeline conditions);
   bool empty() const { return items_.empty(); }
   // Is the batch large enough to be evaluated on a thread? Then no further event should be added.
-  bool full() const { return items_.size() >= kMaxItems || bytes_.size() >= kMaxBytes; }
+  bool full() const { return items_.size() >= kMaxItems || bytes_.size() + grid_bytes_ >= kMaxBytes; }
 
   // force_torque_channel: the channel of the response as a six_axis_force_torque_t; empty: the response is a
   // body_wrenches_t. It must outlive the batch.
   void add_request(std::int64_t timestamp, Bytes request, std::string_view force_torque_channel);
   void add_rejected_pose(std::int64_t timestamp, DecodeError cause);
   void add_copy(std::int64_t timestamp, std::string_view channel, Bytes bytes);
-  // seas: with the one that the event brings.
-  void add_seas(std::int64_t timestamp, SeaTimeline seas);
+  // seas: with the one that the event brings. grid_bytes: of its message, if that is a grid.
+  void add_seas(std::int64_t timestamp, SeaTimeline seas, std::size_t grid_bytes);
   void add_rejected_sea(std::int64_t timestamp, const Error& error);
   void add_condition(std::int64_t timestamp, Bytes message);
   void add_input_error(std::string error);
@@ -119,6 +119,7 @@ class ReplayBatch {
   std::int64_t copied_ = 0;
   std::vector<Item> items_;
   std::vector<std::uint8_t> bytes_;
+  std::size_t grid_bytes_ = 0;     // of the messages whose grids seas_ has
   std::vector<SeaTimeline> seas_;  // the first is that at the start
   ConditionTimeline conditions_;   // at the start
   OutputRecords records_;

@@ -19,7 +19,7 @@ class ReplayChannels {
   struct Role {
     bool request = false;             // body_states_t
     std::optional<std::size_t> pose;  // index of the channel in the PoseRequestAdapter
-    bool sea = false;                 // sea_state_t, of a scene that receives its sea
+    bool sea = false;                 // sea_state_t or sea_grid_t, of a scene that receives its sea
     bool condition = false;           // body_condition_t, of a scene with compartments or tanks
     bool copied = false;
 

@@ -175,6 +175,7 @@ void add_options(CLI::App& app, ReplayOptions& options) {
   add_hydrostatics_channel_option(app, options.hydrostatics_channel);
   add_loads_channel_option(app, options.loads_channel);
   add_sea_channel_option(app, options.sea_channel);
+  add_sea_grid_channel_option(app, options.sea_grid_channel);
   add_condition_channel_option(app, options.condition_channel);
   add_options(app, options.poses);
   app.add_option(
@@ -283,7 +284,7 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
   }
   if (const Expected<void> checked = check_channels_distinct(
           {options.states_channel, options.wrenches_channel, options.hydrostatics_channel,
-           options.loads_channel, options.sea_channel, options.condition_channel});
+           options.loads_channel, options.sea_channel, options.sea_grid_channel, options.condition_channel});
       !checked) {
     return tl::unexpected(checked.error());
   }
@@ -353,7 +354,7 @@ namespace {
 // Can the replay receive the sea that the scene does not describe?
 Expected<void> check_sea_input(const ReplayOptions& options, const Scene& scene) {
   if (!scene.receives_sea()) return {};
-  const std::string subject = scene.name() + ": waves = \"received\"";
+  const std::string subject = scene.name() + ": " + to_string(scene.sea_messages());
   if (input_format(options) == FileFormat::kCsv) {
     return make_error({subject, "with " + options.input.string(),
                        "an LCM log, which holds the sea's messages", "a CSV file has poses only",
@@ -388,7 +389,8 @@ Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& sc
   std::vector<std::string> responses{options.wrenches_channel, options.hydrostatics_channel,
                                      options.loads_channel};
   std::vector<std::string> reserved = responses;
-  reserved.insert(reserved.end(), {options.states_channel, options.sea_channel, options.condition_channel});
+  reserved.insert(reserved.end(), {options.states_channel, options.sea_channel, options.sea_grid_channel,
+                                   options.condition_channel});
   Expected<PoseChannels> poses = resolve_pose_channels(options.poses, scene, reserved);
   if (!poses) return tl::unexpected(poses.error());
   if (const Expected<void> checked = check_velocities_usable(*poses, scene); !checked) {
@@ -401,7 +403,9 @@ Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& sc
   }
   Expected<ReplayChannels> channels = ReplayChannels::make(
       {.states = options.states_channel,
-       .sea = scene.receives_sea() ? options.sea_channel : "",
+       .sea = scene.receives_grids() ? options.sea_grid_channel
+              : scene.receives_sea() ? options.sea_channel
+                                     : "",
        .condition = scene.bodies_with_subdivision() > 0 ? options.condition_channel : ""},
       poses->channels, options.copied, std::move(responses));
   if (!channels) return tl::unexpected(channels.error());

@@ -38,6 +38,7 @@ struct ReplayOptions {
   std::string hydrostatics_channel{kHydrostaticsChannel};
   std::string loads_channel{kLoadsChannel};
   std::string sea_channel{kSeaChannel};
+  std::string sea_grid_channel{kSeaGridChannel};
   std::string condition_channel{kConditionChannel};
   PoseOptions poses;
   std::vector<std::string> copied;  // regular expressions

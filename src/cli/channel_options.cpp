@@ -48,6 +48,14 @@ CLI::Option* add_sea_channel_option(CLI::App& app, std::string& channel) {
       ->capture_default_str();
 }
 
+CLI::Option* add_sea_grid_channel_option(CLI::App& app, std::string& channel) {
+  return app
+      .add_option("--sea-grid-channel", channel,
+                  "LCM channel for grids of the sea (sea_grid_t), received where the scene says waves = "
+                  "\"grid\"")
+      ->capture_default_str();
+}
+
 CLI::Option* add_condition_channel_option(CLI::App& app, std::string& channel) {
   return app
       .add_option("--condition-channel", channel,

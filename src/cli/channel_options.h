@@ -17,6 +17,7 @@ CLI::Option* add_wrenches_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_hydrostatics_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_loads_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_sea_channel_option(CLI::App& app, std::string& channel);
+CLI::Option* add_sea_grid_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_condition_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_status_channel_option(CLI::App& app, std::string& channel);
 // poses: the poses that the option applies to, in words.

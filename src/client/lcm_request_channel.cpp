@@ -80,6 +80,8 @@ void LcmRequestChannel::Inbox::compare_with_latest() {
     const double bound =
         a.force_error_bound + b.force_error_bound + kRounding * (force_a.norm() + force_b.norm());
     if (a.status == b.status && (force_a - force_b).norm() <= bound) continue;
+    // The service has received the sea in between.
+    if (a.status == BodyStatus::kNoSea || b.status == BodyStatus::kNoSea) continue;
     contradiction = "two responses to request " + std::to_string(latest.id.seq) + ": body " +
                     std::to_string(a.body_id) + " has " + to_string(a.status) + ", force " +
                     format_vector(force_a, 6) + " N, and " + to_string(b.status) + ", force " +

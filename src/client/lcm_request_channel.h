@@ -84,6 +84,9 @@ class LcmRequestChannel {
   // The session's responses that arrived during the last wait_for(), including duplicates and old ones.
   const std::vector<ResponseArrival>& arrivals() const { return inbox_->arrivals; }
 
+  // Makes wait_for() wait for another response to the same request.
+  void discard_response() { inbox_->has_response = false; }
+
   bool has_response() const { return inbox_->has_response; }
   const WrenchResponse& latest_response() const { return inbox_->latest; }  // requires has_response()
   // The loads that belong to latest_response(); without bodies unless they are waited for.

@@ -24,6 +24,10 @@ const BodyLoads* find_other_body(const BorrowedRequest& request, const BodiesLoa
   return nullptr;
 }
 
+bool lacks_sea(const WrenchResponse& response) {
+  return std::ranges::find(response.bodies, BodyStatus::kNoSea, &BodyWrench::status) != response.bodies.end();
+}
+
 }  // namespace
 
 Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
@@ -37,7 +41,12 @@ Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
   ++statistics.requests;
   Expected<void> sent = channel.send(request);
   for (std::int64_t retries = 0;; ++retries) {
-    if (channel.wait_for(request.id.seq, Clock::now() + to_duration(retry_policy.timeout))) {
+    const Clock::time_point deadline = Clock::now() + to_duration(retry_policy.timeout);
+    while (channel.wait_for(request.id.seq, deadline)) {
+      if (retries < retry_policy.max_retries && lacks_sea(channel.latest_response())) {
+        channel.discard_response();
+        continue;
+      }
       statistics.round_trip.add(to_seconds(channel.arrivals().back().at - sent_at));
       return check_response(channel, request, channel.latest_response());
     }

@@ -11,7 +11,8 @@
 namespace buoyancy {
 
 // Sends the request, and the same bytes again after each timeout, until its response arrives or the retries
-// are used up. A failed sending counts as a lost request, since network interfaces may come back.
+// are used up. A response without a sea for the request's time (NO_SEA) is returned only then, since the sea
+// may be on its way. A failed sending counts as a lost request, since network interfaces may come back.
 Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
                                                      const BorrowedRequest& request,
                                                      const RetryPolicy& retry_policy,

@@ -71,6 +71,40 @@ TEST(LockstepClient, ResendsRequestUntilResponseArrives) {
   EXPECT_EQ(client.statistics().unanswered, 0);
 }
 
+TEST(LockstepClient, AsksAgainUntilTheServiceHasASea) {
+  const auto without_sea = [](const WrenchRequest& request) {
+    WrenchResponse response = response_to(request, 0.0);
+    for (BodyWrench& body : response.bodies) body.status = BodyStatus::kNoSea;
+    return response;
+  };
+  int received = 0;
+  const FakeService service([&](const WrenchRequest& request) {
+    if (++received <= 3) return Responses{encoded(without_sea(request))};
+    return Responses{encoded(response_to(request, 9.0)), encoded(without_sea(request))};  // a late one
+  });
+  LockstepClient client(open_channel(), {0.05, 1000});
+  for (std::int64_t seq = 0; seq < 2; ++seq) {
+    const Expected<const WrenchResponse*> response = client.request(make_request(seq));
+    ASSERT_TRUE(response) << response.error().message();
+    EXPECT_EQ((*response)->bodies[1].status, BodyStatus::kOk);
+    EXPECT_EQ((*response)->bodies[1].force[2], 9.0);
+  }
+  EXPECT_GE(client.statistics().retries, 3);
+}
+
+TEST(LockstepClient, ReturnsWhatHasNoSeaOnceItsRetriesAreUsedUp) {
+  const FakeService service([](const WrenchRequest& request) {
+    WrenchResponse response = response_to(request, 0.0);
+    response.bodies[0].status = BodyStatus::kNoSea;
+    return Responses{encoded(response)};
+  });
+  LockstepClient client(open_channel(), {0.3, 2});
+  const Expected<const WrenchResponse*> response = client.request(make_request(0));
+  ASSERT_TRUE(response) << response.error().message();
+  EXPECT_EQ((*response)->bodies[0].status, BodyStatus::kNoSea);
+  EXPECT_EQ(client.statistics().retries, 2);
+}
+
 TEST(LockstepClient, StopsWaitingWhenInterrupted) {
   const FakeService service([](const WrenchRequest&) { return Responses{}; });
   ChannelOptions options;

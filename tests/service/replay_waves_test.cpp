@@ -1,10 +1,13 @@
 // Replays in waves: the sea of the scene, and one that the log holds.
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 
+#include "engine/request_handler.h"
 #include "messages/sea_state.h"
 #include "messages/status.h"
+#include "tests/engine/grid_bytes.h"
 #include "tests/service/box_in_waves.h"
 #include "tests/service/replay_fixture.h"
 #include "tests/support/contains.h"
@@ -91,6 +94,49 @@ TEST_F(ReplayInWaves, ReceivesTheSeaOfTheLogOnAnyThreads) {
   };
   same_as_in(kSwell, 1'500, 4'200);
   same_as_in(kHigherSwell, 4'200, 6'000);
+}
+
+ByteVector moving_grid(std::int64_t utime) {
+  SeaGridHeader header = kGridAroundOrigin;
+  header.utime = utime;
+  header.origin = {0.0, 0.0};
+  const double phase = 2e-6 * static_cast<double>(utime);
+  return grid_bytes(header, [phase](double x1, double x2) { return 0.3 * std::cos(x1 + 0.5 * x2 - phase); });
+}
+
+// Requests at the times of grids, between them, and, with a lead time, after the last one.
+TEST_F(ReplayInWaves, ReceivesTheGridsOfTheLogOnAnyThreads) {
+  const std::string text = box_in("waves = \"grid\"\n");
+  scene_ = write("grids.toml", text);
+  const Scene scene = scene_of(text);
+  RequestHandler handler(scene);
+  std::string log;
+  std::vector<BodyWrench> expected;
+  for (std::int64_t i = 0; i < 4'000; ++i) {
+    const std::int64_t utime = 1'000 * i;
+    if (i % 20 == 0 && i < 3'900) {
+      const ByteVector grid = moving_grid(utime);
+      log += event("BUOYANCY_SEA_GRID", utime, grid);
+      ASSERT_TRUE(handler.receive_sea(grid));
+    }
+    const ByteVector bytes = request(utime - (i % 3 == 0 ? 15'000 : i % 20 * 1'000), 0.0);
+    log += event("BUOYANCY_STATES", utime, bytes);
+    expected.push_back(decoded<WrenchResponse>(handler.handle(bytes)).bodies.at(0));
+  }
+  const std::string input = write("in.lcmlog", log);
+  for (const char* jobs : {"1", "3", "8"}) {
+    const FinishedProcess finished = replay(input, path("out.lcmlog"), {"--jobs", jobs});
+    ASSERT_EQ(finished.exit_code, 0) << finished.standard_error;
+    const std::vector<BodyWrench> received = wrenches_of(path("out.lcmlog"));
+    ASSERT_EQ(received.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      ASSERT_EQ(received[i].status, expected[i].status) << i;
+      ASSERT_EQ(received[i].force, expected[i].force) << i;
+    }
+  }
+  EXPECT_EQ(expected.front().status, BodyStatus::kNoSea);
+  EXPECT_EQ(expected[1'000].status, BodyStatus::kOk);
+  EXPECT_EQ(expected.back().status, BodyStatus::kNoSea);
 }
 
 TEST_F(ReplayInWaves, ReportsASeaThatCannotBeUsed) {

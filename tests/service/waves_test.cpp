@@ -1,10 +1,14 @@
 // The service in waves, over UDP: the sea that it publishes, and one that it receives.
+#include <cmath>
 #include <csignal>
 #include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "engine/request_handler.h"
 #include "messages/sea_state.h"
+#include "tests/engine/grid_bytes.h"
 #include "tests/service/box_in_waves.h"
 #include "tests/service/raw_lcm.h"
 #include "tests/service/running_service.h"
@@ -115,6 +119,67 @@ TEST(ServiceInWaves, UsesTheSeaThatItReceives) {
       wait_for_status(socket, [](const ServiceStatus& now) { return now.counters.seas_received > 1; }));
   ASSERT_TRUE(wait_for_status(socket, [](const ServiceStatus&) { return true; }));
   EXPECT_TRUE(contains(service.log(), "at which such waves break"));
+}
+
+// A wave that moves, on a grid around the box; 200 x 200 samples are prepared by a thread.
+ByteVector moving_grid(std::int64_t utime, std::int32_t side) {
+  SeaGridHeader header = kGridAroundOrigin;
+  header.utime = utime;
+  header.rows = header.columns = side;
+  header.origin = {-10.0, -10.0};
+  header.spacing = {40.0 / side, 40.0 / side};
+  const double phase = 2e-6 * static_cast<double>(utime);
+  return grid_bytes(header, [phase](double x1, double x2) { return 0.3 * std::cos(x1 + 0.5 * x2 - phase); });
+}
+
+// Grid and request follow each other without a pause, as in a simulator in lock-step.
+TEST(ServiceInWaves, AnswersInTheGridThatWasSentBeforeTheRequest) {
+  const std::string text = box_in("waves = \"grid\"\n");
+  const Scene scene = scene_of(text);
+  for (const std::int32_t side : {40, 200}) {
+    RawLcmSocket socket;
+    const RunningService service({}, text);
+    RequestHandler handler(scene);
+    int sent_again = 0;
+    for (std::int64_t step = 0; step < 30; ++step) {
+      const ByteVector grid = moving_grid(16'667 * step, side);
+      ASSERT_TRUE(handler.receive_sea(grid));
+      WrenchRequest states = one_body(9, step, 0.2);
+      states.id.utime = 16'667 * step;
+      const ByteVector request = encoded(states);
+      const auto expected = decoded<WrenchResponse>(handler.handle(request));
+      BodyWrench wrench;
+      for (bool first = true; first || wrench.status == BodyStatus::kNoSea; first = false) {
+        if (!first) ++sent_again;
+        socket.send("BUOYANCY_SEA_GRID", grid);
+        socket.send("BUOYANCY_STATES", request);
+        wrench = receive(socket).bodies.at(0);
+      }
+      ASSERT_EQ(wrench.status, BodyStatus::kOk);
+      EXPECT_EQ(wrench.force, expected.bodies[0].force);
+      EXPECT_EQ(wrench.torque, expected.bodies[0].torque);
+    }
+    EXPECT_LT(sent_again, 5) << "the network may lose a grid, but requests wait for those before them";
+    EXPECT_TRUE(contains(service.log(), "grids of the sea on BUOYANCY_SEA_GRID"));
+  }
+}
+
+TEST(ServiceInWaves, RejectsAndCountsGridsThatItCannotUse) {
+  ByteVector cut = moving_grid(0, 40);
+  cut.pop_back();
+  ByteVector not_finite = moving_grid(0, 200);
+  for (std::size_t i = 1; i <= 4; ++i) not_finite[not_finite.size() - i] = 0xff;
+  for (const auto& [bytes, text] : {std::pair{cut, "length does not fit the count"},
+                                    {not_finite, "elevation[199][199] = "},
+                                    {encoded(sea_of(kSwell, 77)), "sea_grid_t"}}) {
+    RawLcmSocket socket;
+    const RunningService service({}, box_in("waves = \"grid\"\n"));
+    socket.send("BUOYANCY_SEA_GRID", bytes);
+    ASSERT_TRUE(
+        wait_for_status(socket, [](const ServiceStatus& now) { return now.counters.seas_rejected == 1; }));
+    ASSERT_TRUE(wait_for_status(socket, [](const ServiceStatus&) { return true; }));
+    EXPECT_TRUE(contains(service.log(), text)) << service.log();
+  }
 }
 
 TEST(ServiceInWaves, LogsThatTheWavesOfItsSceneWouldBreak) {

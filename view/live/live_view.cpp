@@ -87,7 +87,10 @@ Expected<LiveView> LiveView::open(const Scene& scene, const std::string& lcm_url
       {channels.hydrostatics, {MessageKind::kHydrostatics}},
       {channels.loads, {MessageKind::kLoads}},
       {channels.status, {MessageKind::kStatus}}};
-  if (scene.receives_sea()) subscriptions.emplace_back(channels.sea, Route{MessageKind::kSea});
+  // A sea on grids is not drawn.
+  if (scene.receives_sea() && !scene.receives_grids()) {
+    subscriptions.emplace_back(channels.sea, Route{MessageKind::kSea});
+  }
   if (scene.bodies_with_subdivision() > 0) {
     subscriptions.emplace_back(channels.condition, Route{MessageKind::kCondition});
   }

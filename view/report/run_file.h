@@ -29,6 +29,7 @@ struct RunFileOptions {
   std::string wrenches_channel{kWrenchesChannel};
   std::string loads_channel{kLoadsChannel};
   std::string sea_channel{kSeaChannel};              // of a log, for a scene that receives its sea
+  std::string sea_grid_channel{kSeaGridChannel};     // likewise, on grids
   std::string condition_channel{kConditionChannel};  // of a log, for a scene with compartments or tanks
   std::string status_channel{kStatusChannel};
   PoseChannels poses;               // of a log

@@ -199,7 +199,7 @@ Expected<void> read_run_log(const std::filesystem::path& path, const RunFileOpti
       {options.wrenches_channel,
        [&](const RecordedEvent& event) { matcher.on_response(event.timestamp, event.bytes); }},
       {options.loads_channel, [&](const RecordedEvent& event) { matcher.on_loads(event.bytes); }},
-      {options.sea_channel,
+      {builder.scene().receives_grids() ? options.sea_grid_channel : options.sea_channel,
        [&](const RecordedEvent& event) { builder.receive_sea(event.timestamp, event.bytes); }},
       {options.condition_channel,
        [&](const RecordedEvent& event) { builder.receive_condition(event.timestamp, event.bytes); }},
