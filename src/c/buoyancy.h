@@ -91,9 +91,10 @@ enum {
   BUOYANCY_STATUS_BAD_QUATERNION = 3,    // |norm - 1| > 1e-3; closer ones are normalised
   BUOYANCY_STATUS_NON_FINITE_TWIST = 4,  // NaN or infinity in a velocity, of a body with drag or added mass
   BUOYANCY_STATUS_OPEN_EDGE_WET = 6,     // the mesh is open, and part of its boundary is not dry
-  BUOYANCY_STATUS_OUT_OF_RANGE = 7,      // the result is beyond the range of double
-  BUOYANCY_STATUS_NO_SEA = 8,            // the scene's waves come in messages, which a query does not receive
-  BUOYANCY_STATUS_BAD_CONDITION = 9,     // of the service: a message about a compartment or tank is unusable
+  BUOYANCY_STATUS_OUT_OF_RANGE =
+      7,                       // the result is beyond double's range, or the body leaves the grid of a sea
+  BUOYANCY_STATUS_NO_SEA = 8,  // the scene's waves come in messages, which a query does not receive
+  BUOYANCY_STATUS_BAD_CONDITION = 9,  // of the service: a message about a compartment or tank is unusable
   // In waves: the bound on the force's error is above the weight of the water that the whole body displaces.
   BUOYANCY_STATUS_NOT_CERTIFIED = 10
 };
@@ -107,7 +108,8 @@ typedef struct buoyancy_sea buoyancy_sea;
 
 // toml: the sections [world] and [water] of a scene file (docs/scene_file.md), in UTF-8. An empty text is
 // water at rest. directory: where files of wave components that the text names are looked up; NULL: the
-// process's current one. Errors: SCENE, also for waves = "received". Complexity: O(wave components).
+// process's current one. Errors: SCENE, also for a sea that comes in messages. Complexity: O(wave
+// components).
 BUOYANCY_API buoyancy_error buoyancy_sea_from_toml(const char* toml, const char* directory,
                                                    buoyancy_sea** sea);
 // Frees a handle; NULL is allowed. Errors: HANDLE.
@@ -123,7 +125,7 @@ typedef struct buoyancy_sea_info {
   double axis2[3];          // likewise of x2; axis2 = up x axis1
   double depth;             // [m], infinite in deep water and in water at rest
   double max_elevation;     // [m]: no crest is higher over the level, no trough deeper
-  int64_t wave_components;  // 0: the water is at rest
+  int64_t wave_components;  // 0: the water is at rest, or its surface is given on a grid
 } buoyancy_sea_info;
 // Sets all members but the size. Errors: HANDLE, INVALID_ARGUMENT.
 BUOYANCY_API buoyancy_error buoyancy_sea_get_info(const buoyancy_sea* sea, buoyancy_sea_info* info);
@@ -157,6 +159,23 @@ typedef struct buoyancy_water {
 } buoyancy_water;
 // Sets all members to their defaults. size: sizeof(buoyancy_water). Errors: INVALID_ARGUMENT.
 BUOYANCY_API buoyancy_error buoyancy_default_water(buoyancy_water* water, size_t size);
+
+// Samples of a surface.
+typedef struct buoyancy_grid {
+  size_t size;               // sizeof(buoyancy_grid)
+  const double* elevations;  // [m], over the level, -1000 to 1000, row after row: rows * columns
+  int64_t rows;              // along axis2 of buoyancy_sea_info, 4 to 4096
+  int64_t columns;           // along axis1, 4 to 4096
+  double origin[2];          // [m], of elevations[0], along axis1 and axis2 from the world's origin
+  double spacing[2];         // [m], 0.001 to 10000, between neighbours along axis1 and along axis2
+  int32_t periodic;          // 1: the surface repeats after columns * spacing[0] and rows * spacing[1]; 0: it
+                             // ends at the outermost samples, and elevations beyond are NaN
+} buoyancy_grid;
+// Makes a sea whose surface is the bicubic spline through samples, which are copied, at rest at all times.
+// Its pressure is hydrostatic. water: level, density, gravity and up; NULL: their defaults; its sea is NULL.
+// Errors: HANDLE, INVALID_ARGUMENT, SCENE for a number out of range. Complexity: 20 ns per sample.
+BUOYANCY_API buoyancy_error buoyancy_sea_from_grid(const buoyancy_grid* grid, const buoyancy_water* water,
+                                                   buoyancy_sea** sea);
 
 // ---------- arrays of poses
 

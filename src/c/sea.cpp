@@ -55,6 +55,36 @@ buoyancy_error buoyancy_sea_from_toml(const char* toml, const char* directory, b
   });
 }
 
+buoyancy_error buoyancy_sea_from_grid(const buoyancy_grid* grid, const buoyancy_water* water,
+                                      buoyancy_sea** sea) {
+  return run_call([&]() -> CallResult {
+    ArgumentChecks checks("buoyancy_sea_from_grid");
+    checks.out_handle("sea", sea);
+    const buoyancy_grid* const given = checks.given("grid", grid);
+    const buoyancy::QueryWater under = buoyancy::check_water(checks, water);
+    if (checks.failed()) return checks.failure();
+    if (under.waves != nullptr) checks.fail("water->sea", "a sea", "NULL");
+    const auto max_side = static_cast<std::int64_t>(buoyancy::kMaxGridSide);
+    checks.count("grid->rows", given->rows, max_side);
+    checks.count("grid->columns", given->columns, max_side);
+    if (checks.failed()) return checks.failure();
+    const std::span elevations =
+        checks.array("grid->elevations", given->elevations, given->rows * given->columns);
+    if (checks.failed()) return checks.failure();
+    buoyancy::Expected<buoyancy::QuerySea> made =
+        buoyancy::QuerySea::from_grid({elevations,
+                                       static_cast<std::size_t>(given->rows),
+                                       static_cast<std::size_t>(given->columns),
+                                       {given->origin[0], given->origin[1]},
+                                       {given->spacing[0], given->spacing[1]},
+                                       given->periodic != 0},
+                                      under.at_rest);
+    if (!made) return buoyancy::failure(BUOYANCY_ERROR_SCENE, std::move(made.error()));
+    buoyancy::hand_over(std::make_unique<buoyancy_sea>(*std::move(made)), sea);
+    return {};
+  });
+}
+
 buoyancy_error buoyancy_sea_free(buoyancy_sea* sea) {
   return run_call([&]() -> CallResult {
     ArgumentChecks checks("buoyancy_sea_free");

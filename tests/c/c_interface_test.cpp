@@ -748,6 +748,45 @@ TEST(CInterface, SaysWhatIsWrongWithAMesh) {
   }
 }
 
+TEST(CInterface, TakesASeaFromAGrid) {
+  // A plane over another level is water at rest.
+  const std::vector<double> elevations(30, 0.25);
+  buoyancy_grid grid{sizeof(buoyancy_grid), elevations.data(), 5, 6, {-10.0, -8.0}, {4.0, 4.0}, 0};
+  buoyancy_water water{};
+  ASSERT_EQ(buoyancy_default_water(&water, sizeof water), BUOYANCY_OK);
+  water.level = 1.0;
+  buoyancy_sea* sea = nullptr;
+  ASSERT_EQ(buoyancy_sea_from_grid(&grid, &water, &sea), BUOYANCY_OK) << last_error();
+  const std::array<double, 2> x1{0.5, 11.0};
+  const std::array<double, 2> x2{1.0, 0.0};
+  const std::int64_t utime = 0;
+  std::array<double, 2> heights{};
+  ASSERT_EQ(buoyancy_sea_elevations(sea, 2, x1.data(), x2.data(), &utime, 1, heights.data(), 1), BUOYANCY_OK);
+  EXPECT_NEAR(heights[0], 0.25, 1e-12);
+  EXPECT_TRUE(std::isnan(heights[1])) << "beyond the edge";
+  buoyancy_sea_info info{};
+  info.size = sizeof info;
+  ASSERT_EQ(buoyancy_sea_get_info(sea, &info), BUOYANCY_OK);
+  EXPECT_EQ(info.level, 1.0);
+  EXPECT_EQ(info.wave_components, 0);
+
+  buoyancy_sea* none = sea;
+  water.sea = sea;
+  expect_failure(buoyancy_sea_from_grid(&grid, &water, &none), kInvalid, "water->sea");
+  EXPECT_EQ(none, nullptr);
+  buoyancy_sea_free(sea);
+  grid.rows = 4;
+  grid.spacing[1] = 0.0;
+  expect_failure(buoyancy_sea_from_grid(&grid, nullptr, &none), BUOYANCY_ERROR_SCENE, "spacing[1] = 0");
+  grid.rows = std::int64_t{1} << 40;
+  expect_failure(buoyancy_sea_from_grid(&grid, nullptr, &none), kInvalid, "grid->rows");
+  grid.rows = 2;
+  expect_failure(buoyancy_sea_from_grid(&grid, nullptr, &none), BUOYANCY_ERROR_SCENE, "2 rows");
+  grid.elevations = nullptr;
+  expect_failure(buoyancy_sea_from_grid(&grid, nullptr, &none), kInvalid, "grid->elevations: NULL");
+  expect_failure(buoyancy_sea_from_grid(nullptr, nullptr, &none), kInvalid, "grid: NULL");
+}
+
 TEST(CInterface, SaysWhatIsWrongWithASeaOrAScene) {
   buoyancy_sea* sea = nullptr;
   buoyancy_scene* scene = nullptr;

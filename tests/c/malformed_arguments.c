@@ -204,7 +204,16 @@ int main(void) {
     const buoyancy_poses* at = one_in(30) ? NULL : &poses;
     const int32_t threads = one_in(10) ? (int32_t)draw() : (int32_t)(draw() % 3);
     const int64_t n = count((int64_t)(draw() % kMaxPoses));
-    switch (draw() % 9) {
+    switch (draw() % 10) {
+      case 9: {
+        const buoyancy_grid grid = {size_of(sizeof grid), one_in(20) ? NULL : numbers, count(4),     count(5),
+                                    {number(), number()}, {number(), number()},        enumerator(2)};
+        buoyancy_sea* of_grid = NULL;
+        judge("buoyancy_sea_from_grid",
+              buoyancy_sea_from_grid(one_in(30) ? NULL : &grid, one_in(2) ? NULL : &water, &of_grid));
+        buoyancy_sea_free(of_grid);
+        break;
+      }
       case 0:
         judge("buoyancy_mesh_query",
               buoyancy_mesh_query(any_handle(mesh, scene), one_in(3) ? NULL : &water, enumerator(6),

@@ -55,7 +55,7 @@ def message_of(sea, utime, instance_id):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--steps", type=int, default=RATE * 3600, help="number of grids, %(default)s by default")
+    parser.add_argument("steps", type=int, nargs="?", default=RATE * 3600, help="number of grids (%(default)s)")
     parser.add_argument("--ttl", type=int, default=0, help="1: also to other machines of the network")
     arguments = parser.parse_args()
     sea, instance_id = FftSea(), random.getrandbits(63)
