@@ -67,6 +67,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   add_loads_channel_option(app, arguments.channels.loads);
   add_status_channel_option(app, arguments.channels.status);
   add_sea_channel_option(app, arguments.channels.sea);
+  add_sea_grid_channel_option(app, arguments.channels.sea_grid);
   add_condition_channel_option(app, arguments.channels.condition);
   add_viewer_channel_options(app, arguments.poses);
 }
@@ -76,7 +77,7 @@ Expected<void> check_arguments(const Arguments& arguments) {
   const ObservedChannels& channels = arguments.channels;
   if (Expected<void> checked =
           check_channels_distinct({channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
-                                   channels.status, channels.sea, channels.condition});
+                                   channels.status, channels.sea, channels.sea_grid, channels.condition});
       !checked) {
     return checked;
   }
@@ -100,7 +101,7 @@ int show(const CLI::App& app, const Arguments& arguments) {
   Expected<PoseChannels> poses =
       resolve_pose_channels(arguments.poses, *scene,
                             {channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
-                             channels.status, channels.sea, channels.condition});
+                             channels.status, channels.sea, channels.sea_grid, channels.condition});
   if (!poses) return report(app, poses.error(), kUsageError);
   channels.poses = *std::move(poses);
   Expected<std::vector<StaticResource>> page = live_page(*scene, BUOYANCY_VERSION, arguments.three);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/sea_timeline.h"
 #include "messages/sea_state.h"
 #include "tests/service/raw_lcm.h"
 #include "tests/support/byte_vector.h"
@@ -117,6 +118,34 @@ TEST_F(LivePageInWaves, DrawsReceivedSeaThatHolds) {
   EXPECT_EQ(browser().run("return [buoyancyPage.surfaceHeight(3, 4), buoyancyView.scene.waves.level];"),
             nlohmann::json({0, 1.0}))
       << "at the level of the message";
+}
+
+TEST_F(LivePageInWaves, DrawsSurfaceOfGrids) {
+  const Scene scene = scene_of(kSeaOnGrids);
+  open(kSeaOnGrids);
+  SeaTimeline timeline(scene);
+  const auto send_grid = [&](const SeaGridHeader& header, double amplitude, double phase) {
+    const ByteVector bytes = waves_on_grid(header, amplitude, phase);
+    ASSERT_TRUE(timeline.receive(bytes, scene));
+    socket_.send(std::string(kSeaGridChannel), bytes);
+  };
+  SeaGridHeader header = grid_of_pages();
+  send_grid(header, 0.3, 0.2);
+  header.utime += 200'000;
+  header.level = 0.6;
+  send_grid(header, 0.4, 0.9);
+  header.utime += 200'000;
+  header.columns = 81;  // on another grid
+  send_grid(header, 0.2, -1.0);
+  for (const std::int64_t after : {0, 50'000, 200'000, 290'000, 400'000}) {
+    SCOPED_TRACE(after);
+    const std::int64_t utime = kTodayUtime + after;
+    const SeaPeriod& period = **timeline.at(utime);
+    send_request(utime, 0.0);
+    wait_for_time(sea_time(period, utime, 0.0));
+    expect_page_draws(browser(), "buoyancyView.scene", SeaSnapshot(*period.sea, utime));
+  }
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/sea_timeline.h"
 #include "messages/request.h"
 #include "messages/sea_state.h"
 #include "tests/support/recorded_log.h"
@@ -97,6 +98,40 @@ TEST_F(ReportPageInWaves, DrawsEachReceivedSeaWhileItHolds) {
     go_to(kTodayUtime + 1'000'000 * seconds);
     expect_page_draws(browser(), "buoyancy_report.scene", snapshot);
   }
+}
+
+TEST_F(ReportPageInWaves, DrawsTheSurfaceOfGridsAtEachRow) {
+  const Scene scene = scene_of(kSeaOnGrids);
+  RecordedLog log;
+  SeaTimeline timeline(scene);
+  std::vector<ByteVector> grids;
+  for (std::int64_t second = 0; second <= 12; ++second) {
+    const std::int64_t utime = kTodayUtime + 1'000'000 * second;
+    SeaGridHeader header = grid_of_pages();
+    header.utime = utime + 300'000;
+    grids.push_back(
+        waves_on_grid(header, 0.2 + 0.01 * static_cast<double>(second), static_cast<double>(second)));
+    log.add(utime, kSeaGridChannel, grids.back());
+    WrenchRequest request;
+    request.id = {.utime = utime, .session_id = 1, .seq = second};
+    request.bodies = {{.body_id = 1,
+                       .position = {kBodiesAt[0], kBodiesAt[1], 1.5},
+                       .quaternion_wxyz = {1.0, 0.0, 0.0, 0.0}}};
+    log.add(utime + 1, kStatesChannel, encoded(request));
+  }
+  ASSERT_NO_FATAL_FAILURE(
+      open_run(directory_.write("grid.toml", kSeaOnGrids), directory_.write("run.lcmlog", log.text())));
+  go_to(kTodayUtime + 500'000);
+  EXPECT_EQ(browser().run("return buoyancy_report.scene.water.visible;"), nlohmann::json(true))
+      << "the first request comes before the first grid";
+  for (const ByteVector& grid : grids) ASSERT_TRUE(timeline.receive(grid, scene));
+  for (const std::int64_t second : {3, 11, 1}) {
+    SCOPED_TRACE(second);
+    const std::int64_t utime = kTodayUtime + 1'000'000 * second;
+    go_to(utime + 200'000);
+    expect_page_draws(browser(), "buoyancy_report.scene", SeaSnapshot(*(**timeline.at(utime)).sea, utime));
+  }
+  EXPECT_EQ(browser().console_errors(), std::vector<std::string>{});
 }
 
 TEST_F(ReportPageInWaves, DrawsWaterlineWhereSurfaceMeetsHull) {

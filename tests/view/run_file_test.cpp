@@ -14,6 +14,7 @@
 #include "engine/request_handler.h"
 #include "messages/sea_state.h"
 #include "tests/engine/box_scene.h"
+#include "tests/engine/grid_bytes.h"
 #include "tests/messages/encoded_by_lcm.h"
 #include "tests/messages/upright_pose.h"
 #include "tests/service/one_box_scene.h"
@@ -256,6 +257,28 @@ TEST_F(RunFileInWavesTest, ReceivesTheSeaOfTheLog) {
 
 // Of states in order of arrival: late ones keep their place, a clock that restarts goes on after the last
 // time by the last step, again and again, and a session returns to its own clock.
+// Of more surfaces than a page holds, one is kept at even distances in time.
+TEST(RunBuilder, DrawsLargeSurfacesLessOften) {
+  const Scene scene = scene_of("[water]\nwaves = \"grid\"\n[[body]]\nid = 1\nshape = { type = \"box\" }\n");
+  RunBuilder builder(scene, 1'000);
+  SeaGridHeader header = kGridAroundOrigin;
+  header.rows = header.columns = 600;  // 1.9 MB in a page
+  constexpr int kRows = 40;
+  for (int i = 0; i < kRows; ++i) {
+    header.utime = 1'000'000 * i;
+    builder.receive_sea(0, grid_bytes(header, [](double, double) { return 0.25; }));
+    RecordedState state{.time = header.utime, .utime = header.utime, .state = request_at(0, 0.0).bodies[0]};
+    builder.add(state);
+    builder.add(state);  // another body at the same time
+  }
+  const RecordedRun run = builder.finish();
+  ASSERT_GE(run.surfaces.size(), 6U);
+  ASSERT_LE(run.surfaces.size(), 13U);
+  EXPECT_EQ(run.surfaces[0].time, 0.0);
+  for (std::size_t i = 1; i < run.surfaces.size(); ++i)
+    EXPECT_EQ(run.surfaces[i].time - run.surfaces[i - 1].time, 4.0);
+}
+
 TEST(RunBuilder, MapsClocksToOneAxis) {
   struct State {
     std::int32_t body;

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "tests/engine/grid_bytes.h"
 #include "tests/view/browser.h"
 #include "waves/sea_snapshot.h"
 
@@ -74,6 +77,24 @@ inline std::vector<std::array<double, 2>> points_of_surface() {
   for (int i = 0; i < 17; ++i)
     points.push_back({kBodiesAt[0] + 0.37 * i * i - 20.0, kBodiesAt[1] + 7.0 * i - 60.0});
   return points;
+}
+
+// Grids for a scene of kSeaOnGrids: periodic, so that they hold everywhere.
+inline const std::string kSeaOnGrids = "[water]\nlevel = 0.5\nwaves = \"grid\"\n" + kCurrentOfPages + kBox;
+inline SeaGridHeader grid_of_pages() {
+  SeaGridHeader header{.utime = kTodayUtime, .instance_id = 5, .origin = {-8.0, 3.0}, .spacing = {0.5, 0.4}};
+  header.level = 0.75;
+  header.periodic = 1;
+  header.rows = 48;
+  header.columns = 65;
+  return header;
+}
+inline ByteVector waves_on_grid(const SeaGridHeader& header, double amplitude, double phase) {
+  const double k1 = 2.0 * std::numbers::pi / (header.columns * header.spacing[0]);
+  const double k2 = 2.0 * std::numbers::pi / (header.rows * header.spacing[1]);
+  return grid_bytes(header, [&](double x1, double x2) {
+    return amplitude * (std::cos(2.0 * k1 * x1 + phase) + std::sin(k1 * x1 - 3.0 * k2 * x2 + phase));
+  });
 }
 
 // scene_in_page: the page's WaterScene, an expression. Compares what buoyancyPage.surfaceHeight() returns,

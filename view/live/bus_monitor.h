@@ -39,6 +39,8 @@ struct ArrivalTime {
 struct RequestTime {
   std::int64_t utime = 0;  // [us]
   double lead_time = 0.0;  // [s], finite
+
+  bool operator==(const RequestTime&) const = default;
 };
 
 // The latest observations of one body.

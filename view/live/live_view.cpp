@@ -87,9 +87,9 @@ Expected<LiveView> LiveView::open(const Scene& scene, const std::string& lcm_url
       {channels.hydrostatics, {MessageKind::kHydrostatics}},
       {channels.loads, {MessageKind::kLoads}},
       {channels.status, {MessageKind::kStatus}}};
-  // A sea on grids is not drawn.
-  if (scene.receives_sea() && !scene.receives_grids()) {
-    subscriptions.emplace_back(channels.sea, Route{MessageKind::kSea});
+  if (scene.receives_sea()) {
+    subscriptions.emplace_back(scene.receives_grids() ? channels.sea_grid : channels.sea,
+                               Route{MessageKind::kSea});
   }
   if (scene.bodies_with_subdivision() > 0) {
     subscriptions.emplace_back(channels.condition, Route{MessageKind::kCondition});
@@ -176,10 +176,19 @@ void LiveView::dispatch(const Route& route, Bytes bytes, ArrivalTime arrival) {
   }
 }
 
+void LiveView::publish_surface(const SeaPeriod& sea, const RequestTime& time) {
+  if (time == surface_time_ || now_ < next_surface_) return;
+  surface_time_ = time;
+  sea_text_ = std::make_shared<const std::string>(surface_json(sea, time.utime, time.lead_time).dump());
+  next_surface_ = now_ + static_cast<double>(sea_text_->size()) / kSurfaceBytesPerSecond;
+}
+
 void LiveView::publish() {
   if (receives_sea_) {
     const std::shared_ptr<const SeaPeriod> sea = monitor_.sea_period();
-    if (sea && sea != sea_) {
+    if (sea && monitor_.scene().receives_grids()) {
+      publish_surface(*sea, *monitor_.request_time());
+    } else if (sea && sea != sea_) {
       sea_ = sea;
       sea_text_ = std::make_shared<const std::string>(sea_json(*sea).dump());
     }

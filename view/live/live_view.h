@@ -30,6 +30,7 @@ struct ObservedChannels {
   std::string loads{kLoadsChannel};
   std::string status{kStatusChannel};
   std::string sea{kSeaChannel};
+  std::string sea_grid{kSeaGridChannel};
   std::string condition{kConditionChannel};
   PoseChannels poses;
 };
@@ -40,6 +41,8 @@ void use_idle_scheduling();
 class LiveView {
  public:
   static constexpr double kSnapshotsPerSecond = 30.0;
+  // To a page in a sea on grids: more would fall behind. 256 by 256 samples fit into every snapshot.
+  static constexpr double kSurfaceBytesPerSecond = 2e7;
 
   // Receives from here on. scene and broadcaster must outlive the view. Errors: see UdpmReceiver::open; two
   // channels have the same name.
@@ -78,6 +81,8 @@ class LiveView {
   void drain();
   void dispatch(const Route& route, Bytes bytes, ArrivalTime arrival);
   void publish();
+  // Publishes the surface of a sea on grids, unless the page has it.
+  void publish_surface(const SeaPeriod& sea, const RequestTime& time);
   void update_metrics();
 
   UdpmReceiver receiver_;
@@ -93,6 +98,8 @@ class LiveView {
   bool receives_sea_;
   std::shared_ptr<const SeaPeriod> sea_;  // the received one that sea_text_ describes
   SnapshotBroadcaster::Text sea_text_;
+  std::optional<RequestTime> surface_time_;  // of sea_text_, in a sea on grids
+  double next_surface_ = 0.0;                // [s], when the page may get another one
 };
 
 }  // namespace buoyancy::view

@@ -37,8 +37,13 @@
   let newest_sea = model.sea || null;  // data that is not in the picture yet, see sea_json.h: of the scene, or received
   function use_newest_sea() {
     if (newest_sea === null) return;
-    sea = new Sea(newest_sea);
+    const data = newest_sea;
     newest_sea = null;
+    if (data.surface && sea) {
+      sea.take(data);
+      return;
+    }
+    sea = data.surface ? new SplineSea(data) : new Sea(data);
     if (scene) scene.use_sea(sea);
   }
   // [m], over the level: the elevation that is drawn at the distances x and y along the sea's axes from W's origin.

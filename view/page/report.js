@@ -23,6 +23,10 @@
   const scene = make_water_scene(element('canvas'), { ...data.model, bodies: bodies.map((body) => body.description) });
 
   const seas = data.seas.map((sea) => new Sea(sea));
+  // A sea on grids has one of these surfaces from its time on.
+  const surfaces = data.surfaces || [], surface_times = surfaces.map((surface) => surface.time);
+  const sea_on_grids = surfaces.length > 0 ? new SplineSea(surfaces[0]) : null;
+  let shown_surface = 0;
 
   const position_names = ['px', 'py', 'pz'], quaternion_names = ['qw', 'qx', 'qy', 'qz'];
   const at_row = (body, names, row) => names.map((name) => body.columns[name][row]);
@@ -54,6 +58,11 @@
   // Returns the sea at a time of the run and its own time [s], from the last row of the selected body before then and
   // the time since that row. In water at rest, and where the sea is not known, they are null and NaN.
   function sea_at(when) {
+    if (sea_on_grids && when >= surface_times[0]) {
+      const at = row_at(surface_times, when);
+      if (at !== shown_surface) sea_on_grids.take(surfaces[shown_surface = at]);
+      return { sea: sea_on_grids, sea_time: surface_times[at] };
+    }
     if (seas.length === 0) return { sea: null, sea_time: NaN };
     const { time: times, sea_time: sea_times, sea: places } = selected.columns;
     const row = row_at(times, when);
@@ -66,7 +75,7 @@
     body.columns[name].reduce((a, b) => (Math.abs(b) > a ? Math.abs(b) : a), most), 0);
   // scale_of_body: of a body's values, see Plot. is_valid: whether a row's value has a meaning; a response whose status is not OK holds zeros.
   const groups = [
-    { key: 'heave', title: 'Heave', unit: 'm', columns: { [`height of the body's origin above the ${seas.length > 0 ? 'still water level' : 'water'}`]: 'heave' }, is_valid: has_pose,
+    { key: 'heave', title: 'Heave', unit: 'm', columns: { [`height of the body's origin above the ${seas.length + surfaces.length > 0 ? 'still water level' : 'water'}`]: 'heave' }, is_valid: has_pose,
       scale_of_body: diagonal },
     { key: 'angles', title: 'Roll and pitch, 0 upright', unit: 'degrees', scale_of_body: () => 180, columns: { roll: 'roll', pitch: 'pitch' }, is_valid: has_pose },
     { key: 'force', title: 'Buoyant force', moving: 'Force of the water', unit: 'N', columns: { z: 'fz', x: 'fx', y: 'fy' }, is_valid: is_ok, scale_of_body: largest_force },

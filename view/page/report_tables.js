@@ -104,7 +104,8 @@ function bodies_table(data) {
 }
 
 // The waves of a run in a sentence; empty in water at rest.
-function waves_text(seas) {
+function waves_text(seas, surfaces) {
+  if (surfaces) return `Waves: surfaces on grids, of which ${surfaces.length} are drawn. `;
   if (seas.length === 0) return '';
   if (seas.length > 1) return `Waves: ${seas.length} different seas, received one after the other. `;
   const sea = seas[0];
@@ -140,7 +141,7 @@ function report_tables(data, bodies, seas) {
       ['latency, median, 99 %, maximum', [status.p50, status.p99, status.max].map(seconds_text).join(', ')]]));
   }
   section('The scene', table_of(
-    `Water: level ${format_number(water.level)} m along [${water.up.join(', ')}], ${format_number(water.density)} kg/m³, gravity ${format_number(water.gravity)} m/s². ${waves_text(seas)}${current_text(data.model)}` +
+    `Water: level ${format_number(water.level)} m along [${water.up.join(', ')}], ${format_number(water.density)} kg/m³, gravity ${format_number(water.gravity)} m/s². ${waves_text(seas, data.surfaces)}${current_text(data.model)}` +
     `Instructions: ${target}.`,
     ['id', 'name', 'mesh', 'method', 'tolerance', 'mass, kg', 'density, kg/m³'],
     described.map((body) => [String(body.id), body.name, meshes[body.mesh].name, body.method, body.tolerance, body.mass, body.density])));

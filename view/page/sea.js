@@ -39,9 +39,82 @@ class Sea {
     return found === undefined ? 0 : this.wave_number[found];
   }
 
+  // The lines on which a picture draws this sea.
+  lines_of(count) { return new SeaGrid(this, count); }
+
   significant_wave_height() {
     return 4 * Math.sqrt(0.5 * this.amplitude.reduce((sum, amplitude) => sum + amplitude * amplitude, 0));
   }
+}
+
+// The surface of a sea that is known on grids, at the time of the request to which it belongs: bicubic splines, evaluated
+// as ElevationSpline does (src/waves/elevation_spline.h). data: see surface_json() in sea_json.h.
+class SplineSea {
+  constructor(data) {
+    for (const name of ['e1', 'e2', 'up']) this[name] = data[name];
+    this.components = 0;
+    this.version = 0;
+    this.take(data);
+    this.wave_number = this.typical_wave_number();
+  }
+
+  // Takes another surface of the same sea.
+  take(data) {
+    this.level = data.level;
+    this.rise = data.surface.rise;
+    this.parts = data.surface.parts.map((part) => ({ ...part, c: decode_numbers(part.coefficients, Float32Array) }));
+    this.version += 1;
+  }
+
+  // Returns the elevation [m] over the level at the distances x1, x2 [m] along e1, e2 from W's origin; beyond a grid 0.
+  elevation(x1, x2) {
+    let sum = this.rise;
+    for (const part of this.parts) {
+      const at1 = place_in(part, 0, x1), at2 = place_in(part, 1, x2);
+      if (at1 === null || at2 === null) return 0;
+      const stride = part.cells[0] + 3;
+      for (let n = 0; n < 4; n += 1) {
+        const row = (at2.cell + n) * stride + at1.cell;
+        let along = 0;
+        for (let m = 0; m < 4; m += 1) along += at1.weights[m] * part.c[row + m];
+        sum += part.share * at2.weights[n] * along;
+      }
+    }
+    return this.parts.length > 0 ? sum : 0;
+  }
+
+  // [rad/m], of a regular wave with the same ratio of slope and elevation; 0 in a calm sea.
+  typical_wave_number() {
+    let slopes = 0, elevations = 0;
+    for (const { c, cells, spacing } of this.parts.slice(0, 1)) {
+      const stride = cells[0] + 3, mean = c.reduce((sum, value) => sum + value, 0) / c.length;
+      for (let i = stride; i < c.length; i += 1) {
+        if (i % stride === 0) continue;
+        slopes += ((c[i] - c[i - 1]) / spacing[0]) ** 2 + ((c[i] - c[i - stride]) / spacing[1]) ** 2;
+        elevations += (c[i] - mean) ** 2;
+      }
+    }
+    return elevations > 0 ? Math.sqrt(slopes / elevations) : 0;
+  }
+  largest_relevant_wave_number() { return 1.5 * this.wave_number; }
+
+  lines_of(count) { return new SplineGrid(this, count); }
+}
+
+// The cell of a spline at a coordinate [m] along e1 or e2 (axis 0 or 1), and the weights of its four coefficients there;
+// null beyond the grid.
+function place_in(part, axis, x) {
+  const cells = part.cells[axis], position = (x - part.origin[axis]) / part.spacing[axis];
+  let cell = Math.floor(position), t = position - cell;
+  if (part.periodic) {
+    cell -= cells * Math.floor(cell / cells);
+  } else {
+    if (!(position >= 0 && position <= cells)) return null;
+    cell = Math.min(cell, cells - 1);
+    t = position - cell;
+  }
+  const s = 1 - t;
+  return { cell, weights: [s * s * s / 6, (4 - 6 * t * t + 3 * t * t * t) / 6, (4 - 6 * s * s + 3 * s * s * s) / 6, t * t * t / 6] };
 }
 
 function dot(a, b) {
@@ -80,7 +153,7 @@ class SeaGrid {
     const { x, sea, lines, half } = this;
     x.set(coordinates);
     for (let m = 0; m < lines; m += 1) {
-      const gap = Math.max(m > 0 ? x[m] - x[m - 1] : 0, m + 1 < lines ? x[m + 1] - x[m] : 0);
+      const gap = this.gap_at(m);
       for (let i = 0; i < sea.components; i += 1) {
         const share = shown_share(sea.wave_number[i] * gap);
         this.cos2[i * lines + m] = share * Math.cos(sea.k2[i] * x[m]);
@@ -91,6 +164,12 @@ class SeaGrid {
         this.sin1[at] = share * Math.sin(sea.k1[i] * x[m]);
       }
     }
+  }
+
+  // [m], the largest distance of a line from those beside it.
+  gap_at(m) {
+    const { x, lines } = this;
+    return Math.max(m > 0 ? x[m] - x[m - 1] : 0, m + 1 < lines ? x[m + 1] - x[m] : 0);
   }
 
   // Evaluates the sea at time t with the anchor at (anchor1, anchor2), [m] along e1 and e2 from W's origin.
@@ -169,6 +248,25 @@ class SeaGrid {
     }
     const corner = elevation[at + lines + 1];
     return corner + (1 - a) * (ahead - corner) + (1 - b) * (right - corner);
+  }
+}
+
+// The same of a SplineSea: point by point, flatter where the lines are too far apart to show its waves.
+class SplineGrid extends SeaGrid {
+  place_lines(coordinates) {
+    super.place_lines(coordinates);
+    const wave_number = this.sea.largest_relevant_wave_number();
+    this.share = Array.from(this.x, (_, m) => shown_share(wave_number * this.gap_at(m)));
+  }
+
+  evaluate(anchor1, anchor2) {
+    const { sea, lines, x, share, elevation } = this;
+    for (let n = 0; n < lines; n += 1) {
+      for (let m = 0; m < lines; m += 1) {
+        const shown = Math.min(share[m], share[n]);
+        elevation[n * lines + m] = shown > 0 ? shown * sea.elevation(anchor1 + x[m], anchor2 + x[n]) : 0;
+      }
+    }
   }
 }
 

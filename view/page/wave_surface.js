@@ -22,14 +22,17 @@ class WaveSurface {
     const lines = 2 * Math.floor(0.5 * Math.min(max_lines, Math.max(WaveSurface.min_lines, affordable))) + 1;
     this.outer_lines = Math.round(0.15 * lines);  // on each side
     this.core_lines = lines - 2 * this.outer_lines;
-    this.grid = new SeaGrid(sea, lines);
+    this.grid = sea.lines_of(lines);
     this.coordinates = new Float64Array(lines);
     this.wavelength = 2 * Math.PI / sea.largest_relevant_wave_number();
-    this.level = sea.level - water_scene.model.water.level;  // [m], a received sea has a level of its own
     this.spacing = this.reach = this.anchor1 = this.anchor2 = this.time = NaN;  // of what is drawn
+    this.version = 0;
     this.add_surface(lines);
     for (const body of water_scene.bodies.values()) this.add_heights(body);
   }
+
+  // [m], over that of the scene: a received sea has a level of its own.
+  get level() { return this.sea.level - this.water_scene.model.water.level; }
 
   // Draws water at rest again.
   remove() {
@@ -56,9 +59,10 @@ class WaveSurface {
     // The anchor is on a multiple of the spacing, so that points stay in their places when the camera moves.
     const anchor1 = this.spacing * Math.round(target.dot(this.e1) / this.spacing);
     const anchor2 = this.spacing * Math.round(target.dot(this.e2) / this.spacing);
-    const changed = grid_changed || time !== this.time || anchor1 !== this.anchor1 || anchor2 !== this.anchor2;
+    const version = this.sea.version || 0;  // of a SplineSea
+    const changed = grid_changed || time !== this.time || version !== this.version || anchor1 !== this.anchor1 || anchor2 !== this.anchor2;
     if (changed) {
-      Object.assign(this, { time, anchor1, anchor2 });
+      Object.assign(this, { time, version, anchor1, anchor2 });
       this.grid.evaluate(dot(this.sea.e1, origin) + anchor1, dot(this.sea.e2, origin) + anchor2, time);
       this.fill_surface();
     }

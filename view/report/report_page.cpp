@@ -159,6 +159,15 @@ Json seas_json(const RecordedRun& run) {
   return seas;
 }
 
+Json surfaces_json(const RecordedRun& run) {
+  Json surfaces = Json::array();
+  for (const DrawnSurface& drawn : run.surfaces) {
+    surfaces.push_back(drawn.sea);
+    surfaces.back()["time"] = drawn.time;
+  }
+  return surfaces;
+}
+
 }  // namespace
 
 std::string report_data(const Scene& scene, const RecordedRun& run, const ReportOptions& options) {
@@ -177,6 +186,7 @@ std::string report_data(const Scene& scene, const RecordedRun& run, const Report
             {"model", scene_model(scene)},
             {"seas", seas_json(run)},
             {"bodies", Json::array()}};
+  if (!run.surfaces.empty()) data["surfaces"] = surfaces_json(run);
   data["model"].erase("sea");  // it is one of "seas"
   for (std::size_t i = 0; i < scene.bodies().size(); ++i) {
     const Body& body = scene.bodies()[i];

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/json.h"
 #include "engine/sea_timeline.h"
 #include "messages/loads.h"
 #include "messages/request.h"
@@ -135,6 +136,12 @@ struct BodyRun {
   std::vector<std::uint32_t> condition_of_row;           // index into `conditions` for each of `rows`
 };
 
+// The surface that is drawn from a time of the run until the next one.
+struct DrawnSurface {
+  double time = 0.0;  // [s]
+  Json sea;           // see surface_json()
+};
+
 struct RecordedRun {
   std::vector<BodyRun> bodies;      // in the order of Scene::bodies()
   std::int64_t unknown_bodies = 0;  // rows about bodies that the scene does not have
@@ -144,7 +151,9 @@ struct RecordedRun {
   std::vector<std::string> warnings;  // the first ones about input that could not be read
   std::int64_t suppressed_warnings = 0;
   std::vector<std::shared_ptr<const SeaPeriod>> seas;  // of the shown rows: the scene's, or those received
-  std::optional<ServiceStatus> status;                 // the last one recorded
+  // In a sea on grids, which is another one at every time: in ascending order of time, after decimation.
+  std::vector<DrawnSurface> surfaces;
+  std::optional<ServiceStatus> status;  // the last one recorded
 };
 
 }  // namespace buoyancy::view

@@ -48,6 +48,13 @@ Pose raw_pose(const BodyState& state) {
   return {to_vec3(state.position), q.norm() > 0.0 ? q : Eigen::Quaterniond::Identity()};
 }
 
+std::size_t bytes_of(const DrawnSurface& drawn) {
+  std::size_t bytes = 0;
+  for (const Json& part : drawn.sea.at("surface").at("parts"))
+    bytes += part.at("coefficients").get_ref<const std::string&>().size();
+  return bytes;
+}
+
 // motion: nullopt for a body without drag and added mass. solver: of the body.
 double energy_of(const RigidBody& rigid, const std::optional<HydrodynamicMotion>& motion,
                  const RecordedState& recorded, const BodyWrench& wrench, const Solver& solver,
@@ -258,9 +265,28 @@ std::shared_ptr<RowLoads> RunBuilder::add(const RecordedState& recorded) {
   const std::shared_ptr<const SeaPeriod> sea = sea_of(recorded);
   row[kSeaTime] = sea ? sea_time(*sea, recorded.utime, recorded.lead_time) : kUnknown;
   row[kSea] = sea ? place_of(sea) : kUnknown;
+  if (scene_.receives_grids()) keep_surface(recorded);
   std::shared_ptr<RowLoads> loads = make_loads(run_.bodies[*index], body, recorded);
   shown->rows.add({.number = rows_added_++, .values = row, .loads = loads, .condition = condition});
   return loads;
+}
+
+void RunBuilder::keep_surface(const RecordedState& recorded) {
+  std::vector<DrawnSurface>& surfaces = run_.surfaces;
+  const double time = 1e-6 * static_cast<double>(recorded.time);
+  if (!surfaces.empty() && (time <= surfaces.back().time || time < surfaces.back().time + surface_interval_))
+    return;
+  const std::shared_ptr<const SeaPeriod> sea = water_.sea_at(recorded.utime, recorded.lead_time);
+  if (sea == nullptr) return;
+  surfaces.push_back({time, surface_json(*sea, recorded.utime, recorded.lead_time)});
+  surface_bytes_ += bytes_of(surfaces.back());
+  if (surface_bytes_ <= kMaxSurfaceBytes || surfaces.size() < 3) return;
+  for (std::size_t i = 2; i < surfaces.size(); i += 2) surfaces[i / 2] = std::move(surfaces[i]);
+  surfaces.resize((surfaces.size() + 1) / 2);
+  surface_bytes_ = 0;
+  for (const DrawnSurface& kept : surfaces) surface_bytes_ += bytes_of(kept);
+  surface_interval_ =
+      (surfaces.back().time - surfaces.front().time) / static_cast<double>(surfaces.size() - 1);
 }
 
 double RunBuilder::place_of(const std::shared_ptr<const SeaPeriod>& sea) {

@@ -27,6 +27,8 @@ namespace buoyancy::view {
 
 inline constexpr std::size_t kMaxBodies = 1'000;   // shown in one page
 inline constexpr std::size_t kMaxSeasShown = 100;  // about 20 kB each, of 200 components
+// Of all surfaces on grids in a page: more of them are drawn less often.
+inline constexpr std::size_t kMaxSurfaceBytes = 25'000'000;
 
 // The contents of a file about one body at one instant.
 struct RecordedState {
@@ -57,7 +59,7 @@ class RunBuilder {
   // row's loads: set `recorded` in them, before finish(), to what the file holds; others are computed.
   std::shared_ptr<RowLoads> add(const RecordedState& recorded);
   // Receives a sea_state_t or sea_grid_t, for a scene that receives it: wrenches of rows added later are
-  // those in it. Rows in a sea on grids are shown without it: every step has another one.
+  // those in it.
   void receive_sea(std::int64_t timestamp, Bytes message);
   // Receives a body_condition_t, for a scene with compartments or tanks. It holds from its utime on.
   void receive_condition(std::int64_t timestamp, Bytes message);
@@ -96,6 +98,7 @@ class RunBuilder {
   // Sets the rigid body, with the liquids of this condition; nullptr: those of the scene file.
   void make_rigid(const Body& body, const std::shared_ptr<const BodyCondition>& condition, ShownBody& shown);
   std::shared_ptr<const SeaPeriod> sea_of(const RecordedState& recorded) const;
+  void keep_surface(const RecordedState& recorded);
   double place_of(const std::shared_ptr<const SeaPeriod>& sea);  // in run_.seas, see kSea
   void count_evaluation(ShownBody& shown, const Body& body, const ValidatedPose& pose) const;
   std::shared_ptr<RowLoads> make_loads(BodyRun& run, const Body& body, const RecordedState& recorded) const;
@@ -112,6 +115,8 @@ class RunBuilder {
   std::int64_t latest_ = 0;  // [us], on the axis, of all bodies
   std::int64_t rows_added_ = 0;
   bool warned_of_seas_ = false;
+  std::size_t surface_bytes_ = 0;  // of run_.surfaces
+  double surface_interval_ = 0.0;  // [s], at least between two of them
   RecordedRun run_;
 };
 
