@@ -117,9 +117,10 @@ Expected<FmuContent> fmu_content(const fs::path& scene_file, const std::string& 
   const fs::path directory = scene_file.parent_path();
   Expected<SceneDescription> description = parse_scene(*text, scene_file.string(), directory);
   if (!description) return make_error(description.error());
-  if (description->waves_received) {
-    return make_error({scene_file.string(), "waves = \"received\"", "the wave systems themselves",
-                       "an FMU receives no messages", "List the systems, or leave waves out"});
+  if (description->sea_messages != SeaMessages::kNone) {
+    return make_error({scene_file.string(), to_string(description->sea_messages),
+                       "the wave systems themselves", "an FMU receives no messages",
+                       "List the systems, or leave waves out"});
   }
   Expected<Scene> scene = Scene::prepare(*description);
   if (!scene) return make_error(std::move(scene.error()));
