@@ -112,14 +112,14 @@ std::string structure_xml(const VariableTable& table, FmiVersion version) {
     const std::string depends = attribute("dependencies", dependencies(variable, table, version));
     if (version == FmiVersion::k3) {
       const std::string reference = attribute("valueReference", std::to_string(variable.first));
-      outputs += "    <Output" + reference + depends + "/>\n";
-      unknowns += "    <InitialUnknown" + reference + "/>\n";
+      outputs += format_text("    <Output{}{}/>\n", reference, depends);
+      unknowns += format_text("    <InitialUnknown{}/>\n", reference);
       continue;
     }
     for (std::size_t i = 0; i < variable.size; ++i) {
       const std::string index = attribute("index", std::to_string(variable.first + i + 1));
-      outputs += "      <Unknown" + index + depends + "/>\n";
-      unknowns += "      <Unknown" + index + "/>\n";
+      outputs += format_text("      <Unknown{}{}/>\n", index, depends);
+      unknowns += format_text("      <Unknown{}/>\n", index);
     }
   }
   if (version == FmiVersion::k2) {
