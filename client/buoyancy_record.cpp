@@ -34,10 +34,10 @@ constexpr int kMessagesPerPoll = 256;  // signals are checked after so many
 struct Arguments {
   std::string output;
   std::string lcm_url;
-  std::vector<std::string> channels{std::string(kStatesChannel),       std::string(kWrenchesChannel),
-                                    std::string(kHydrostaticsChannel), std::string(kLoadsChannel),
-                                    std::string(kStatusChannel),       std::string(kSeaChannel),
-                                    std::string(kConditionChannel)};
+  std::vector<std::string> channels{
+      std::string(kStatesChannel),    std::string(kWrenchesChannel),    std::string(kHydrostaticsChannel),
+      std::string(kLoadsChannel),     std::string(kStatusChannel),      std::string(kSeaChannel),
+      std::string(kConditionChannel), std::string(kWaterPointsChannel), std::string(kWaterSamplesChannel)};
 };
 
 class Recorder {

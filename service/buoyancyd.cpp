@@ -73,10 +73,10 @@ int run(int argc, char** argv) {
                                                       .refused = options.check ? &refused : nullptr});
   if (!scene) return report_failure(app, options, scene.error(), refused);
   const ChannelNames& channels = options.channels;
-  Expected<PoseChannels> poses =
-      resolve_pose_channels(options.poses, *scene,
-                            {channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
-                             channels.sea, channels.condition, channels.status});
+  Expected<PoseChannels> poses = resolve_pose_channels(
+      options.poses, *scene,
+      {channels.states, channels.wrenches, channels.hydrostatics, channels.loads, channels.sea,
+       channels.condition, channels.water_points, channels.water_samples, channels.status});
   if (!poses) {
     print_error(app, poses.error());
     return kUsageError;

@@ -35,6 +35,8 @@ void add_options(CLI::App& app, DaemonOptions& options) {
   add_loads_channel_option(app, options.channels.loads);
   add_sea_channel_option(app, options.channels.sea);
   add_condition_channel_option(app, options.channels.condition);
+  add_water_points_channel_option(app, options.channels.water_points);
+  add_water_samples_channel_option(app, options.channels.water_samples);
   add_status_channel_option(app, options.channels.status);
   add_options(app, options.poses);
   app.add_option("--threads", options.threads,
@@ -72,9 +74,9 @@ void add_options(CLI::App& app, DaemonOptions& options) {
 
 Expected<void> check_options(const DaemonOptions& options) {
   const ChannelNames& channels = options.channels;
-  if (Expected<void> checked =
-          check_channels_distinct({channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
-                                   channels.sea, channels.condition, channels.status});
+  if (Expected<void> checked = check_channels_distinct(
+          {channels.states, channels.wrenches, channels.hydrostatics, channels.loads, channels.sea,
+           channels.condition, channels.water_points, channels.water_samples, channels.status});
       !checked) {
     return checked;
   }
