@@ -37,7 +37,8 @@ struct Arguments {
   std::vector<std::string> channels{std::string(kStatesChannel),       std::string(kWrenchesChannel),
                                     std::string(kHydrostaticsChannel), std::string(kLoadsChannel),
                                     std::string(kStatusChannel),       std::string(kSeaChannel),
-                                    std::string(kSeaGridChannel),      std::string(kConditionChannel)};
+                                    std::string(kSeaGridChannel),      std::string(kConditionChannel),
+                                    std::string(kWaterPointsChannel),  std::string(kWaterSamplesChannel)};
 };
 
 class Recorder {

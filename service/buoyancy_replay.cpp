@@ -225,8 +225,9 @@ int run(int argc, char** argv) {
     return fail(checked.error(), kUsageError);
   }
   print_table(app, options, *scene, *input);
-  const OutputLayout layout{plan->output_format, options.wrenches_channel, options.hydrostatics_channel,
-                            options.loads_channel, !options.loads.empty()};
+  const OutputLayout layout{plan->output_format,           options.wrenches_channel,
+                            options.hydrostatics_channel,  options.loads_channel,
+                            options.water_samples_channel, !options.loads.empty()};
   std::optional<ReplayComparison> comparison;
   if (!options.baseline.empty()) {
     Expected<ReplayComparison> opened = ReplayComparison::open(options.baseline, layout, *scene);

@@ -76,7 +76,8 @@ int run(int argc, char** argv) {
   Expected<PoseChannels> poses =
       resolve_pose_channels(options.poses, *scene,
                             {channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
-                             channels.sea, channels.sea_grid, channels.condition, channels.status});
+                             channels.sea, channels.sea_grid, channels.condition, channels.water_points,
+                             channels.water_samples, channels.status});
   if (!poses) {
     print_error(app, poses.error());
     return kUsageError;

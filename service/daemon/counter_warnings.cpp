@@ -88,6 +88,13 @@ std::vector<LogEvent> warnings_since(const ServiceCounters& before, const Servic
       Growth{&ServiceCounters::rejected_bodies,
              fmt::format("requests rejected, more than {} bodies more than the scene has", kMaxExtraBodies),
              "a request repeats bodies, or names unknown ones: distribute them over several requests"},
+      Growth{
+          &ServiceCounters::rejected_points,
+          fmt::format("requests rejected, more points than a response of {} bytes holds", kMaxMessageBytes),
+          "distribute the points over several requests"},
+      Growth{&ServiceCounters::water_points_failed, "points at which the water is not known",
+             "a coordinate is NaN or infinite, or no sea has been received that holds at the time of the "
+             "request, or a point is beyond the edge of the sea's grid: see the status of the responses"},
       Growth{&ServiceCounters::rejected_work,
              fmt::format("requests rejected, computed for more than {} s", kMaxComputing.count()),
              "distribute the bodies over several requests, or raise their tolerance"},

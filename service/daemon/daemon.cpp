@@ -127,11 +127,14 @@ bool Daemon::is_stalled() const {
 }
 
 Expected<void> Daemon::subscribe() {
-  Expected<void> subscribed =
-      connection_.subscribe(channels_.states, [this](Bytes request, std::string_view) {
-        record_queue_delay();
-        guard([&] { on_request(request); });
-      });
+  const auto subscribe_to_requests = [this](const std::string& channel, RequestKind kind) {
+    return connection_.subscribe(channel, [this, kind](Bytes request, std::string_view) {
+      record_queue_delay();
+      guard([&] { on_request(kind, request); });
+    });
+  };
+  Expected<void> subscribed = subscribe_to_requests(channels_.states, RequestKind::kBodies);
+  if (subscribed) subscribed = subscribe_to_requests(channels_.water_points, RequestKind::kWaterPoints);
   for (std::size_t i = 0; subscribed && i < poses_.channels().size(); ++i) {
     subscribed = connection_.subscribe(poses_.channels()[i].channel, [this, i](Bytes pose, std::string_view) {
       guard([&] { on_pose(i, pose); });
@@ -211,6 +214,8 @@ Expected<void> Daemon::run(TerminationSignals& termination, SignalFd& reload) {
                  pose.force_torque_channel.empty() ? channels_.wrenches : pose.force_torque_channel);
   }
   if (grids_) spdlog::info("grids of the sea on {}", channels_.sea_grid);
+  spdlog::info("the water at points: requests on {}, responses on {}", channels_.water_points,
+               channels_.water_samples);
   if (receives_conditions_) {
     spdlog::info("conditions of compartments and tanks on {}", channels_.condition);
   }
@@ -290,25 +295,25 @@ bool Daemon::has_work() const {
   return !waiting_.empty() && (!grids_ || waiting_.first_arrival() < grids_->first_arrival());
 }
 
-bool Daemon::may_take_long(std::int64_t session_id) const {
+bool Daemon::may_take_long(const SessionKey& session) const {
   using Pace = RequestHandler::Pace;
-  const Pace pace = handler_.pace_of(session_id);
-  return pace == Pace::kSeveralSlices || (pace == Pace::kUnknown && handler_.has_room_for(session_id));
+  const Pace pace = handler_.pace_of(session);
+  return pace == Pace::kSeveralSlices || (pace == Pace::kUnknown && handler_.has_room_for(session));
 }
 
 void Daemon::work() {
   const double first_grid = grids_ ? grids_->first_arrival() : kForever;
-  const auto has_room = [this, first_grid](std::int64_t session_id, double arrival) {
-    return handler_.has_room_for(session_id) && arrival < first_grid;
+  const auto has_room = [this, first_grid](const SessionKey& session, double arrival) {
+    return handler_.has_room_for(session) && arrival < first_grid;
   };
   if (waiting_.pop_next(has_room,
                         [this](Bytes request, double arrival) { handle(request, arrival, false); })) {
     return;
   }
-  const std::int64_t session_id = handler_.next_session_id();
+  const SessionKey session = handler_.next_session();
   const RequestHandler::Step step = handler_.resume(end_of_slice());
   if (step == RequestHandler::Step::kStarted) return;
-  const auto arrival = std::ranges::find(arrivals_, session_id, &Arrival::session_id);
+  const auto arrival = std::ranges::find(arrivals_, session, &Arrival::session);
   const double time = arrival->time;
   arrivals_.erase(arrival);
   if (step == RequestHandler::Step::kAnswered) send_reply(time);
@@ -320,14 +325,15 @@ void Daemon::record_queue_delay() {
   queue_delay_ = std::max(queue_delay_, static_cast<double>(delay) * kSecondsPerMicrosecond);
 }
 
-void Daemon::on_request(Bytes request) {
+void Daemon::on_request(RequestKind kind, Bytes request) {
+  const auto header = peek_request(request);
+  if (header && header->kind != kind) return handler_.record_rejected(DecodeError::kFingerprint);
   if (mode_ == ServiceMode::kLatest) return enqueue(request, seconds_now());
   const bool awaits_grid = grids_ && grids_->is_busy();
-  if (awaits_grid || has_work()) {
-    const auto id = peek_request_id(request);
-    const bool waits = id &&
-                       (awaits_grid || waiting_.contains(id->session_id) || may_take_long(id->session_id)) &&
-                       !handler_.is_retry(id->session_id, request);
+  if (header && (awaits_grid || has_work())) {
+    const SessionKey session = header->session();
+    const bool waits = (awaits_grid || waiting_.contains(session) || may_take_long(session)) &&
+                       !handler_.is_retry(session, request);
     if (waits) return wait(request, seconds_now());
   }
   handle(request, seconds_now(), true);
@@ -336,7 +342,7 @@ void Daemon::on_request(Bytes request) {
 void Daemon::on_pose(std::size_t channel, Bytes pose) {
   record_queue_delay();
   if (const auto request = poses_.make_request(channel, pose)) {
-    on_request(*request);
+    on_request(RequestKind::kBodies, *request);
   } else {
     handler_.record_rejected(request.error());
   }
@@ -401,15 +407,15 @@ void Daemon::on_condition(Bytes message) {
 }
 
 void Daemon::enqueue(Bytes request, double arrival) {
-  const auto id = peek_request_id(request);
-  if (!id) {
+  const auto header = peek_request(request);
+  if (!header) {
     handle(request, arrival, false);  // rejects it and counts the cause
     return;
   }
-  LatestRequestQueue::PushResult result = latest_.push(*id, request, arrival);
+  LatestRequestQueue::PushResult result = latest_.push(*header, request, arrival);
   if (result == LatestRequestQueue::PushResult::kFull) {
     handle_next();
-    result = latest_.push(*id, request, arrival);
+    result = latest_.push(*header, request, arrival);
   }
   if (result == LatestRequestQueue::PushResult::kReplaced) handler_.record_superseded();
   if (result == LatestRequestQueue::PushResult::kStale) handler_.record_stale();
@@ -418,14 +424,14 @@ void Daemon::enqueue(Bytes request, double arrival) {
 
 bool Daemon::handle_next() {
   return latest_.pop_next(
-      [this, works = has_work()](std::int64_t session_id) {
-        return handler_.has_room_for(session_id) && !(works && may_take_long(session_id));
+      [this, works = has_work()](const SessionKey& session) {
+        return handler_.has_room_for(session) && !(works && may_take_long(session));
       },
       [this](Bytes request, double arrival) { handle(request, arrival, false); });
 }
 
 void Daemon::wait(Bytes request, double arrival) {
-  switch (waiting_.push(peek_request_id(request).value().session_id, request, arrival)) {
+  switch (waiting_.push(peek_request(request).value().session(), request, arrival)) {
     case WaitingRequests::PushResult::kQueued:
       break;
     case WaitingRequests::PushResult::kRetry:
@@ -447,7 +453,7 @@ void Daemon::handle(Bytes request, double arrival, bool may_wait) {
   if (step == Step::kBusy) return handler_.record_busy();
   const bool is_new = counters.sessions + counters.sessions_evicted != sessions_before;
   if (is_new && spdlog::should_log(spdlog::level::debug)) {
-    const RequestId id = peek_request_id(request).value();
+    const RequestId id = peek_request(request).value().id;
     details_.add({"sessions started", 1, fmt::format("session {} with seq {}", id.session_id, id.seq)},
                  seconds_now());
   }
@@ -455,9 +461,9 @@ void Daemon::handle(Bytes request, double arrival, bool may_wait) {
   has_new_session_ = has_new_session_ || is_new;
   if (has_new_session_) publish_status_to_new_sessions();
   if (step == Step::kAnswered) return;
-  const std::int64_t session_id = peek_request_id(request).value().session_id;
-  const bool is_retry = std::ranges::find(arrivals_, session_id, &Arrival::session_id) != arrivals_.end();
-  if (!is_retry) arrivals_.push_back({session_id, arrival});
+  const SessionKey session = peek_request(request).value().session();
+  const bool is_retry = std::ranges::find(arrivals_, session, &Arrival::session) != arrivals_.end();
+  if (!is_retry) arrivals_.push_back({session, arrival});
 }
 
 void Daemon::send_reply(double arrival) {
@@ -472,7 +478,9 @@ void Daemon::send_reply(double arrival) {
 }
 
 Daemon::AddressedResponse Daemon::address(Bytes response) {
-  const PoseChannel* const pose = poses_.channel_of_session(handler_.last_session_id());
+  const SessionKey session = handler_.last_session();
+  if (session.kind == RequestKind::kWaterPoints) return {channels_.water_samples, response};
+  const PoseChannel* const pose = poses_.channel_of_session(session.id);
   if (pose == nullptr || pose->force_torque_channel.empty()) return {channels_.wrenches, response};
   encode_force_torque(response, response_, force_torque_bytes_);
   return {pose->force_torque_channel, force_torque_bytes_};

@@ -6,6 +6,8 @@
 // request whose session has another one in progress, or may need several slices, waits for its turn. When
 // memory runs out, the message that needs it is lost.
 //
+// Requests for the water at points, on a channel of their own, are handled like those for wrenches.
+//
 // Poses of single bodies on channels of their own are requests too: each channel is a session. Those without
 // velocities, of bodies with drag or added mass, are logged as a warning that says why they get no load.
 //
@@ -65,6 +67,8 @@ struct ChannelNames {
   std::string sea{kSeaChannel};
   std::string sea_grid{kSeaGridChannel};
   std::string condition{kConditionChannel};
+  std::string water_points{kWaterPointsChannel};
+  std::string water_samples{kWaterSamplesChannel};
   std::string status{kStatusChannel};
 };
 
@@ -100,10 +104,10 @@ class Daemon {
   bool has_work() const;
   // May the session's next request take a slice of time, for which quick requests would have to wait? That is
   // assumed of a session whose requests have not been timed yet, if there is room for it.
-  bool may_take_long(std::int64_t session_id) const;
+  bool may_take_long(const SessionKey& session) const;
   void work();  // for a slice. Precondition: has_work()
   void record_queue_delay();
-  void on_request(Bytes request);
+  void on_request(RequestKind kind, Bytes request);  // kind: that of the channel
   void on_sea(Bytes message);
   void on_grid(Bytes message);
   void take_grids();  // that grids_ has prepared
@@ -148,7 +152,7 @@ class Daemon {
   LatestRequestQueue latest_;
   WaitingRequests waiting_;  // mode lockstep
   struct Arrival {
-    std::int64_t session_id = 0;
+    SessionKey session;
     double time = 0.0;
   };
   std::vector<Arrival> arrivals_;  // of the requests in progress

@@ -36,6 +36,8 @@ void add_options(CLI::App& app, DaemonOptions& options) {
   add_sea_channel_option(app, options.channels.sea);
   add_sea_grid_channel_option(app, options.channels.sea_grid);
   add_condition_channel_option(app, options.channels.condition);
+  add_water_points_channel_option(app, options.channels.water_points);
+  add_water_samples_channel_option(app, options.channels.water_samples);
   add_status_channel_option(app, options.channels.status);
   add_options(app, options.poses);
   app.add_option("--threads", options.threads,
@@ -75,7 +77,8 @@ Expected<void> check_options(const DaemonOptions& options) {
   const ChannelNames& channels = options.channels;
   if (Expected<void> checked =
           check_channels_distinct({channels.states, channels.wrenches, channels.hydrostatics, channels.loads,
-                                   channels.sea, channels.sea_grid, channels.condition, channels.status});
+                                   channels.sea, channels.sea_grid, channels.condition, channels.water_points,
+                                   channels.water_samples, channels.status});
       !checked) {
     return checked;
   }

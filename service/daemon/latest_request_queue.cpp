@@ -18,8 +18,10 @@ LatestRequestQueue::LatestRequestQueue(std::size_t max_sessions, std::size_t max
   pending_.reserve(max_sessions);
 }
 
-LatestRequestQueue::PushResult LatestRequestQueue::push(const RequestId& id, Bytes request, double arrival) {
-  Session* session = find(id.session_id);
+LatestRequestQueue::PushResult LatestRequestQueue::push(const RequestHeader& header, Bytes request,
+                                                        double arrival) {
+  const RequestId& id = header.id;
+  Session* session = find(header.session());
   if (session != nullptr && !supersedes(id.seq, session->newest_seq) &&
       arrival <= session->arrival + kRestartIdleTime) {
     return PushResult::kStale;
@@ -32,7 +34,7 @@ LatestRequestQueue::PushResult LatestRequestQueue::push(const RequestId& id, Byt
 
   const bool replaces = session->pending;
   if (!replaces) pending_.push_back(static_cast<std::size_t>(session - sessions_.data()));
-  session->id = id.session_id;
+  session->key = header.session();
   session->newest_seq = id.seq;
   session->pending = true;
   session->arrival = arrival;
@@ -40,9 +42,8 @@ LatestRequestQueue::PushResult LatestRequestQueue::push(const RequestId& id, Byt
   return replaces ? PushResult::kReplaced : PushResult::kQueued;
 }
 
-LatestRequestQueue::Session* LatestRequestQueue::find(std::int64_t id) {
-  const auto found = std::find_if(sessions_.begin(), sessions_.end(),
-                                  [id](const Session& session) { return session.id == id; });
+LatestRequestQueue::Session* LatestRequestQueue::find(const SessionKey& key) {
+  const auto found = std::ranges::find(sessions_, key, &Session::key);
   return found == sessions_.end() ? nullptr : &*found;
 }
 

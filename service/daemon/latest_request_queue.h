@@ -38,9 +38,9 @@ class LatestRequestQueue {
 
   // Does not allocate once the session's buffer is as large as its largest message. arrival: [s], of any
   // monotonic clock; pop_next() returns it with the request.
-  PushResult push(const RequestId& id, Bytes request, double arrival);
+  PushResult push(const RequestHeader& header, Bytes request, double arrival);
 
-  // Removes the request that has waited longest of the sessions with may_handle(std::int64_t session_id), and
+  // Removes the request that has waited longest of the sessions with may_handle(const SessionKey&), and
   // calls handle(Bytes request, double arrival), which must not call push(). False: there is none.
   template <typename Predicate, typename Handler>
   bool pop_next(Predicate&& may_handle, Handler&& handle);
@@ -49,7 +49,7 @@ class LatestRequestQueue {
 
  private:
   struct Session {
-    std::int64_t id = 0;
+    SessionKey key{0};
     std::int64_t newest_seq = 0;  // of the pending request, or of the last one popped
     bool pending = false;
     double arrival = 0.0;  // of the same request [s]
@@ -57,7 +57,7 @@ class LatestRequestQueue {
     std::vector<std::uint8_t> request;
   };
 
-  Session* find(std::int64_t id);
+  Session* find(const SessionKey& key);
   Session* claim_session();  // an unused or evicted one; nullptr: every session has a pending request
 
   // Frees the buffers that popped requests left until there is room. False: there is none.
@@ -74,7 +74,7 @@ class LatestRequestQueue {
 template <typename Predicate, typename Handler>
 bool LatestRequestQueue::pop_next(Predicate&& may_handle, Handler&& handle) {
   const auto next =
-      std::ranges::find_if(pending_, [&](std::size_t index) { return may_handle(sessions_[index].id); });
+      std::ranges::find_if(pending_, [&](std::size_t index) { return may_handle(sessions_[index].key); });
   if (next == pending_.end()) return false;
   Session& session = sessions_[*next];
   pending_.erase(next);

@@ -25,28 +25,28 @@ class WaitingRequests {
       : max_requests_(max_requests), max_bytes_(max_bytes) {}
 
   // arrival: [s], of any monotonic clock; pop_next() returns it with the request.
-  PushResult push(std::int64_t session_id, Bytes request, double arrival) {
+  PushResult push(const SessionKey& session, Bytes request, double arrival) {
     for (const Request& waiting : requests_) {
-      if (waiting.session_id == session_id && std::ranges::equal(waiting.bytes, request)) {
+      if (waiting.session == session && std::ranges::equal(waiting.bytes, request)) {
         return PushResult::kRetry;
       }
     }
     if (requests_.size() == max_requests_ || request.size() > max_bytes_ - bytes_) return PushResult::kFull;
-    requests_.push_back({session_id, arrival, {request.begin(), request.end()}});
+    requests_.push_back({session, arrival, {request.begin(), request.end()}});
     bytes_ += request.size();
     return PushResult::kQueued;
   }
 
-  bool contains(std::int64_t session_id) const {
-    return std::ranges::find(requests_, session_id, &Request::session_id) != requests_.end();
+  bool contains(const SessionKey& session) const {
+    return std::ranges::find(requests_, session, &Request::session) != requests_.end();
   }
 
-  // Removes the first request with may_handle(std::int64_t session_id, double arrival), and calls
+  // Removes the first request with may_handle(const SessionKey&, double arrival), and calls
   // handle(Bytes request, double arrival). False: there is none.
   template <typename Predicate, typename Handler>
   bool pop_next(Predicate&& may_handle, Handler&& handle) {
     const auto next = std::ranges::find_if(
-        requests_, [&](const Request& waiting) { return may_handle(waiting.session_id, waiting.arrival); });
+        requests_, [&](const Request& waiting) { return may_handle(waiting.session, waiting.arrival); });
     if (next == requests_.end()) return false;
     const Request request = std::move(*next);
     requests_.erase(next);
@@ -60,7 +60,7 @@ class WaitingRequests {
 
  private:
   struct Request {
-    std::int64_t session_id = 0;
+    SessionKey session;
     double arrival = 0.0;
     std::vector<std::uint8_t> bytes;
   };

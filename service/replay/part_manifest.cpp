@@ -134,6 +134,8 @@ Expected<ReplayFacts> replay_facts(const ReplayOptions& options, const Scene& sc
   facts.emplace_back(kHydrostaticsChannelFact, options.hydrostatics_channel);
   facts.emplace_back(kLoadsChannelFact, options.loads_channel);
   facts.emplace_back("--condition-channel", options.condition_channel);
+  facts.emplace_back("--water-points-channel", options.water_points_channel);
+  facts.emplace_back("--water-samples-channel", options.water_samples_channel);
   facts.emplace_back("--pose and --force-torque", pose_text(channels));
   facts.emplace_back("--velocity-frame", frame_text(options.poses.velocity_frame));
   facts.emplace_back("--lead-time", format_shortest(options.poses.lead_time));

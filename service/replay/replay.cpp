@@ -48,8 +48,9 @@ bool is_in_pose_session(const PoseRequestAdapter& poses, Bytes request) {
 void add_event(const ReplayTask& task, const RecordedEvent& event, Received& received, ReplayBatch& batch,
                ReplaySummary& summary) {
   // CSV has no channels: every event is a request.
-  const ReplayChannels::Role role = event.channel.empty() ? ReplayChannels::Role{.request = true, .pose = {}}
-                                                          : task.channels.role_of(event.channel);
+  const ReplayChannels::Role role = event.channel.empty()
+                                        ? ReplayChannels::Role{.request = RequestKind::kBodies, .pose = {}}
+                                        : task.channels.role_of(event.channel);
   if (role.copied) batch.add_copy(event.timestamp, event.channel, event.bytes);
   if (role.sea) {
     if (const Expected<void> used = received.seas.receive(event.bytes, task.scene)) {
@@ -62,7 +63,10 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, Received& rec
     batch.add_condition(event.timestamp, event.bytes);
     received.conditions.receive(event.bytes, task.scene);  // for later batches; this one reports errors
   }
-  if (role.request) {
+  if (const auto header = peek_request(event.bytes);
+      role.request && header && header->kind != *role.request) {
+    batch.add_rejected(event.timestamp, "request", DecodeError::kFingerprint);
+  } else if (role.request) {
     batch.add_request(event.timestamp, event.bytes, {});
     if (tells_motion(task, received)) received.motion.add(event.bytes, task.scene);
     if (!event.channel.empty()) {
@@ -75,7 +79,7 @@ void add_event(const ReplayTask& task, const RecordedEvent& event, Received& rec
     received.motion.add(*request, task.scene);
     batch.add_request(event.timestamp, *request, task.poses.channels()[*role.pose].force_torque_channel);
   } else {
-    batch.add_rejected_pose(event.timestamp, request.error());
+    batch.add_rejected(event.timestamp, "pose", request.error());
   }
 }
 

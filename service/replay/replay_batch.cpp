@@ -47,8 +47,10 @@ void ReplayBatch::add_request(std::int64_t timestamp, Bytes request, std::string
   add(Kind::kRequest, timestamp, request).force_torque_channel = force_torque_channel;
 }
 
-void ReplayBatch::add_rejected_pose(std::int64_t timestamp, DecodeError cause) {
-  add(Kind::kRejectedPose, timestamp, {}).cause = cause;
+void ReplayBatch::add_rejected(std::int64_t timestamp, const char* expected, DecodeError cause) {
+  Item& item = add(Kind::kRejected, timestamp, {});
+  item.text = expected;
+  item.cause = cause;
 }
 
 void ReplayBatch::add_copy(std::int64_t timestamp, std::string_view channel, Bytes bytes) {
@@ -82,9 +84,9 @@ void ReplayBatch::evaluate() {
       case Kind::kRequest:
         handle_request(item);
         break;
-      case Kind::kRejectedPose:
+      case Kind::kRejected:
         handler_.record_rejected(item.cause);
-        report_invalid(item, "pose", item.cause);
+        report_invalid(item, item.text, item.cause);
         break;
       case Kind::kCopy:
         records_.add_event(item.timestamp, item.text, message_of(item));
@@ -113,7 +115,11 @@ void ReplayBatch::handle_request(const Item& item) {
   const Bytes request = message_of(item);
   const Bytes response = handler_.handle(request);
   if (response.empty()) {
-    report_invalid(item, "request", peek_request_id(request).error());
+    report_invalid(item, "request", peek_request(request).error());
+    return;
+  }
+  if (handler_.last_session().kind == RequestKind::kWaterPoints) {
+    records_.add_samples(item.timestamp, response);
     return;
   }
   const ResponseBytes published{response, handler_.last_hydrostatics(), handler_.last_loads()};
@@ -126,7 +132,7 @@ void ReplayBatch::handle_request(const Item& item) {
   }
 }
 
-void ReplayBatch::report_invalid(const Item& item, const char* expected, DecodeError cause) {
+void ReplayBatch::report_invalid(const Item& item, const std::string& expected, DecodeError cause) {
   input_errors_.push_back("event at " + std::to_string(item.timestamp) + " us is not a valid " + expected +
                           ": " + to_string(cause));
 }

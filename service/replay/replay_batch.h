@@ -35,7 +35,8 @@ class ReplayBatch {
   // force_torque_channel: the channel of the response as a six_axis_force_torque_t; empty: the response is a
   // body_wrenches_t. It must outlive the batch.
   void add_request(std::int64_t timestamp, Bytes request, std::string_view force_torque_channel);
-  void add_rejected_pose(std::int64_t timestamp, DecodeError cause);
+  // expected: what the event is not, "pose".
+  void add_rejected(std::int64_t timestamp, const char* expected, DecodeError cause);
   void add_copy(std::int64_t timestamp, std::string_view channel, Bytes bytes);
   // seas: with the one that the event brings. grid_bytes: of its message, if that is a grid.
   void add_seas(std::int64_t timestamp, SeaTimeline seas, std::size_t grid_bytes);
@@ -72,16 +73,17 @@ class ReplayBatch {
   static constexpr std::size_t kMaxItems = 1024;
   static constexpr std::size_t kMaxBytes = 262'144;
 
-  enum class Kind { kRequest, kRejectedPose, kCopy, kSeas, kRejectedSea, kCondition, kInputError };
+  enum class Kind { kRequest, kRejected, kCopy, kSeas, kRejectedSea, kCondition, kInputError };
   struct Item {
     Kind kind = Kind::kRequest;
     std::int64_t timestamp = 0;
     std::size_t start = 0;                  // of the message, in bytes_
     std::size_t size = 0;                   // of the message
     std::string_view force_torque_channel;  // kRequest
-    DecodeError cause{};                    // kRejectedPose
-    std::string text;                       // kCopy: the channel; kRejectedSea, kInputError: the description
-    std::size_t seas = 0;                   // kSeas: index into seas_
+    DecodeError cause{};                    // kRejected
+    // kCopy: the channel; kRejected: what was expected; kRejectedSea, kInputError: the description.
+    std::string text;
+    std::size_t seas = 0;  // kSeas: index into seas_
   };
 
   class Messages {
@@ -111,7 +113,7 @@ class ReplayBatch {
   Item& add(Kind kind, std::int64_t timestamp, Bytes message);
   Bytes message_of(const Item& item) const { return Bytes(bytes_).subspan(item.start, item.size); }
   void handle_request(const Item& item);
-  void report_invalid(const Item& item, const char* expected, DecodeError cause);
+  void report_invalid(const Item& item, const std::string& expected, DecodeError cause);
 
   RequestHandler handler_;
   bool loads_csv_;

@@ -36,7 +36,7 @@ ReplayChannels::Role ReplayChannels::role_of(std::string_view channel) {
   if (const auto known = roles_.find(channel); known != roles_.end()) return known->second;
   if (roles_.size() >= kMaxCachedRoles) roles_.clear();
   const Role role = compute_role(channel);
-  if (role.request) saw_states_ = true;
+  if (role.request == RequestKind::kBodies) saw_states_ = true;
   if (role.sea) saw_sea_ = true;
   if (role.pose) saw_poses_[*role.pose] = true;
   return roles_.emplace(channel, role).first->second;
@@ -54,7 +54,8 @@ std::vector<std::string> ReplayChannels::unseen_channels() const {
 
 ReplayChannels::Role ReplayChannels::compute_role(std::string_view channel) const {
   Role role;
-  role.request = channel == names_.states;
+  if (channel == names_.states) role.request = RequestKind::kBodies;
+  if (channel == names_.water_points) role.request = RequestKind::kWaterPoints;
   role.sea = !names_.sea.empty() && channel == names_.sea;
   role.condition = !names_.condition.empty() && channel == names_.condition;
   if (const auto pose = std::ranges::find(poses_, channel); pose != poses_.end()) {

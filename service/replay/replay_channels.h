@@ -1,4 +1,4 @@
-// Maps the channels of a log to their roles in a replay: request, pose or copied event.
+// Maps the channels of a log to their roles in a replay, such as request, pose or copied event.
 #pragma once
 
 #include <functional>
@@ -17,10 +17,10 @@ namespace buoyancy::service {
 class ReplayChannels {
  public:
   struct Role {
-    bool request = false;             // body_states_t
-    std::optional<std::size_t> pose;  // index of the channel in the PoseRequestAdapter
-    bool sea = false;                 // sea_state_t or sea_grid_t, of a scene that receives its sea
-    bool condition = false;           // body_condition_t, of a scene with compartments or tanks
+    std::optional<RequestKind> request;  // body_states_t, water_points_t
+    std::optional<std::size_t> pose;     // index of the channel in the PoseRequestAdapter
+    bool sea = false;                    // sea_state_t or sea_grid_t, of a scene that receives its sea
+    bool condition = false;              // body_condition_t, of a scene with compartments or tanks
     bool copied = false;
 
     bool any() const { return request || pose || sea || condition || copied; }
@@ -30,6 +30,7 @@ class ReplayChannels {
     std::string states;
     std::string sea;        // empty unless the scene receives its sea
     std::string condition;  // empty unless the scene has compartments or tanks
+    std::string water_points;
   };
 
   // copied: regular expressions; an event is copied if one of them matches the full channel name, as in LCM's
@@ -43,8 +44,8 @@ class ReplayChannels {
   Role role_of(std::string_view channel);
 
   // The configured channels of requests, poses and the sea that role_of() was never called with, perhaps
-  // because they are misspelt. The request channel is included only if there are no pose channels; that of
-  // conditions never, since a run need not change any.
+  // because they are misspelt. The channel of states is included only if there are no pose channels; those of
+  // conditions and points never, since a run need not have any.
   std::vector<std::string> unseen_channels() const;
 
  private:

@@ -177,6 +177,8 @@ void add_options(CLI::App& app, ReplayOptions& options) {
   add_sea_channel_option(app, options.sea_channel);
   add_sea_grid_channel_option(app, options.sea_grid_channel);
   add_condition_channel_option(app, options.condition_channel);
+  add_water_points_channel_option(app, options.water_points_channel);
+  add_water_samples_channel_option(app, options.water_samples_channel);
   add_options(app, options.poses);
   app.add_option(
          "--copy", options.copied,
@@ -284,7 +286,8 @@ Expected<ReplayPlan> plan_replay(const ReplayOptions& options) {
   }
   if (const Expected<void> checked = check_channels_distinct(
           {options.states_channel, options.wrenches_channel, options.hydrostatics_channel,
-           options.loads_channel, options.sea_channel, options.sea_grid_channel, options.condition_channel});
+           options.loads_channel, options.sea_channel, options.sea_grid_channel, options.condition_channel,
+           options.water_points_channel, options.water_samples_channel});
       !checked) {
     return tl::unexpected(checked.error());
   }
@@ -387,10 +390,10 @@ Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& sc
     return tl::unexpected(checked.error());
   }
   std::vector<std::string> responses{options.wrenches_channel, options.hydrostatics_channel,
-                                     options.loads_channel};
+                                     options.loads_channel, options.water_samples_channel};
   std::vector<std::string> reserved = responses;
   reserved.insert(reserved.end(), {options.states_channel, options.sea_channel, options.sea_grid_channel,
-                                   options.condition_channel});
+                                   options.condition_channel, options.water_points_channel});
   Expected<PoseChannels> poses = resolve_pose_channels(options.poses, scene, reserved);
   if (!poses) return tl::unexpected(poses.error());
   if (const Expected<void> checked = check_velocities_usable(*poses, scene); !checked) {
@@ -401,13 +404,14 @@ Expected<ReplayRoutes> plan_routes(const ReplayOptions& options, const Scene& sc
   for (const PoseChannel& pose : poses->channels) {
     if (!pose.force_torque_channel.empty()) responses.push_back(pose.force_torque_channel);
   }
-  Expected<ReplayChannels> channels = ReplayChannels::make(
-      {.states = options.states_channel,
-       .sea = scene.receives_grids() ? options.sea_grid_channel
-              : scene.receives_sea() ? options.sea_channel
-                                     : "",
-       .condition = scene.bodies_with_subdivision() > 0 ? options.condition_channel : ""},
-      poses->channels, options.copied, std::move(responses));
+  Expected<ReplayChannels> channels =
+      ReplayChannels::make({.states = options.states_channel,
+                            .sea = scene.receives_grids() ? options.sea_grid_channel
+                                   : scene.receives_sea() ? options.sea_channel
+                                                          : "",
+                            .condition = scene.bodies_with_subdivision() > 0 ? options.condition_channel : "",
+                            .water_points = options.water_points_channel},
+                           poses->channels, options.copied, std::move(responses));
   if (!channels) return tl::unexpected(channels.error());
   return ReplayRoutes{*std::move(poses), *std::move(channels)};
 }

@@ -40,6 +40,8 @@ struct ReplayOptions {
   std::string sea_channel{kSeaChannel};
   std::string sea_grid_channel{kSeaGridChannel};
   std::string condition_channel{kConditionChannel};
+  std::string water_points_channel{kWaterPointsChannel};
+  std::string water_samples_channel{kWaterSamplesChannel};
   PoseOptions poses;
   std::vector<std::string> copied;  // regular expressions
   std::filesystem::path loads;      // CSV file for the loads; empty: none

@@ -49,6 +49,10 @@ void OutputRecords::add_response(std::int64_t timestamp, const ResponseBytes& pu
   for (const BodyWrench& wrench : response_.bodies) append_row(response_.id.utime, wrench);
 }
 
+void OutputRecords::add_samples(std::int64_t timestamp, Bytes samples) {
+  if (layout_.format == FileFormat::kLcmLog) add_event(timestamp, layout_.water_samples_channel, samples);
+}
+
 void LoadsRecords::add(Bytes loads) {
   if (loads.empty()) return;
   [[maybe_unused]] const auto rejected = decode(loads, loads_);

@@ -1,6 +1,6 @@
 // The output of a replay: responses, to an LCM log or as CSV. Records are encoded on any thread and written
-// in order. Hydrostatics and loads of the bodies that request them are written to a log only: a row of the
-// CSV is a wrench. Loads can be written to a CSV file of their own besides.
+// in order. Hydrostatics and loads of the bodies that request them, and samples of the water, are written to
+// a log only: a row of the CSV is a wrench. Loads can be written to a CSV file of their own besides.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +26,7 @@ struct OutputLayout {
   std::string wrenches_channel;  // the channels: logs only
   std::string hydrostatics_channel;
   std::string loads_channel;
+  std::string water_samples_channel;
   bool loads_csv = false;  // also write the loads as rows of a CSV file of their own
 };
 
@@ -62,6 +63,8 @@ class OutputRecords : public Records {
   // written as a six_axis_force_torque_t; empty: it is written as a body_wrenches_t.
   void add_response(std::int64_t timestamp, const ResponseBytes& published,
                     std::string_view force_torque_channel);
+  // Adds a water_samples_t to a log; CSV has no row for it.
+  void add_samples(std::int64_t timestamp, Bytes samples);
   // Copies an event unchanged; to a log only.
   void add_event(std::int64_t timestamp, std::string_view channel, Bytes bytes);
 

@@ -29,6 +29,8 @@ void visit_members(Summary& summary, const Visitor& visitor) {
   for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
     visitor(std::string("/bodies/") + to_string(static_cast<BodyStatus>(i)), counters.bodies[i]);
   }
+  visitor("/water_points", counters.water_points);
+  visitor("/water_points_failed", counters.water_points_failed);
   visitor("/conditions_received", counters.conditions_received);
   visitor("/conditions_rejected", counters.conditions_rejected);
   visitor("/velocities_in_doubt", summary.doubts);
@@ -120,6 +122,10 @@ std::string summary_text(const ReplaySummary& summary, const ReplayComparison* c
   text += fmt::format("{:<22}{:>12}\n", "bodies", count_bodies(counters));
   for (std::size_t i = 0; i < counters.bodies.size(); ++i) {
     if (i == 0 || counters.bodies[i] > 0) line(to_string(static_cast<BodyStatus>(i)), counters.bodies[i]);
+  }
+  if (const std::int64_t points = counters.water_points + counters.water_points_failed; points > 0) {
+    text += fmt::format("{:<22}{:>12}\n", "points of the water", points);
+    line("failed", counters.water_points_failed);
   }
   if (counters.seas_received + counters.seas_rejected > 0) {
     text += fmt::format("{:<22}{:>12}\n", "seas", counters.seas_received + counters.seas_rejected);

@@ -64,6 +64,19 @@ CLI::Option* add_condition_channel_option(CLI::App& app, std::string& channel) {
       ->capture_default_str();
 }
 
+CLI::Option* add_water_points_channel_option(CLI::App& app, std::string& channel) {
+  return app
+      .add_option("--water-points-channel", channel,
+                  "LCM channel for requests for the water at points (water_points_t)")
+      ->capture_default_str();
+}
+
+CLI::Option* add_water_samples_channel_option(CLI::App& app, std::string& channel) {
+  return app
+      .add_option("--water-samples-channel", channel, "LCM channel for their responses (water_samples_t)")
+      ->capture_default_str();
+}
+
 CLI::Option* add_status_channel_option(CLI::App& app, std::string& channel) {
   return app.add_option("--status-channel", channel, "LCM channel for the status (service_status_t), 1 Hz")
       ->capture_default_str();

@@ -19,6 +19,8 @@ CLI::Option* add_loads_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_sea_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_sea_grid_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_condition_channel_option(CLI::App& app, std::string& channel);
+CLI::Option* add_water_points_channel_option(CLI::App& app, std::string& channel);
+CLI::Option* add_water_samples_channel_option(CLI::App& app, std::string& channel);
 CLI::Option* add_status_channel_option(CLI::App& app, std::string& channel);
 // poses: the poses that the option applies to, in words.
 CLI::Option* add_lead_time_option(CLI::App& app, double& seconds, const std::string& poses);

@@ -24,6 +24,7 @@ Expected<Client> Client::open(const ClientOptions& options) {
 Client::Client(ClientVariant client, std::int64_t session_id, std::string status_channel)
     : client_(std::move(client)), status_channel_(std::move(status_channel)) {
   next_.session_id = session_id;
+  next_points_.session_id = session_id;
 }
 
 Expected<std::optional<Warning>> Client::reserve(std::size_t bodies) {
@@ -38,6 +39,15 @@ Expected<const WrenchResponse*> Client::request(std::int64_t utime, std::span<co
       std::visit([&](auto& client) { return client.request(request); }, client_);
   ++next_.seq;
   return response;
+}
+
+Expected<const WaterSamples*> Client::sample_water(std::int64_t utime, std::span<const WaterPoint> points) {
+  next_points_.utime = utime;
+  const BorrowedWaterPoints request(next_points_, points);
+  Expected<const WaterSamples*> samples =
+      std::visit([&](auto& client) { return client.sample_water(request); }, client_);
+  ++next_points_.seq;
+  return samples;
 }
 
 const BodiesLoads& Client::loads() const {

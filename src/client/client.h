@@ -1,4 +1,5 @@
-// Connects a simulator to the buoyancy service: sends body states and receives wrenches.
+// Connects a simulator to the buoyancy service: sends body states and receives wrenches, and asks for the
+// water at points.
 //
 //   buoyancy::Expected<buoyancy::Client> client = buoyancy::Client::open();
 //   ...
@@ -45,6 +46,11 @@ class Client {
   Expected<const WrenchResponse*> request(std::int64_t utime, std::span<const BodyState> states,
                                           double lead_time = 0.0);
 
+  // Requests the water at these points at a simulation time [us] and waits for the response: one sample per
+  // point, in the same order, valid until the next call. Where its status is not kOk, all samples are 0. The
+  // wrenches of an earlier request() may be replaced by newer ones. Errors: see retry_policy.h.
+  Expected<const WaterSamples*> sample_water(std::int64_t utime, std::span<const WaterPoint> points);
+
   // The loads that belong to the last response, of its bodies with this output in their order, valid until
   // the next request. Precondition: ClientOptions::channel.wait_for_loads; there are none otherwise.
   const BodiesLoads& loads() const;
@@ -65,7 +71,8 @@ class Client {
 
   ClientVariant client_;
   std::string status_channel_;
-  RequestId next_;  // of the next request
+  RequestId next_;         // of the next request
+  RequestId next_points_;  // of the next request for the water at points
 };
 
 // Draws a random session_id >= 0. The probability that it equals a given other one is 2^-63.

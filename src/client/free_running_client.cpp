@@ -40,6 +40,19 @@ Expected<const WrenchResponse*> FreeRunningClient::request(const BorrowedRequest
 
 bool FreeRunningClient::wait_for(std::int64_t seq, Clock::time_point deadline) {
   const bool arrived = channel_.wait_for(seq, deadline);
+  record_arrivals();
+  return arrived;
+}
+
+Expected<const WaterSamples*> FreeRunningClient::sample_water(const BorrowedWaterPoints& request) {
+  Expected<const WaterSamples*> samples =
+      sample_water_with_retries(channel_, request, retry_policy_, statistics_);
+  record_arrivals();
+  return samples;
+}
+
+// Recording an arrival twice changes nothing.
+void FreeRunningClient::record_arrivals() {
   for (const ResponseArrival& arrival : channel_.arrivals()) {
     waiting_ = false;
     const auto sent = std::lower_bound(unanswered_.begin(), unanswered_.end(), arrival.seq,
@@ -53,7 +66,6 @@ bool FreeRunningClient::wait_for(std::int64_t seq, Clock::time_point deadline) {
     ++statistics_.unanswered;
     unanswered_.pop_front();
   }
-  return arrived;
 }
 
 ClientStats FreeRunningClient::statistics() const {

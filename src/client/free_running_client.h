@@ -33,6 +33,8 @@ class FreeRunningClient {
   // the request's own or the interval is over. The first request waits as in lock-step mode, since there is
   // no earlier response to use.
   Expected<const WrenchResponse*> request(const BorrowedRequest& request);
+  // Requests the water at points and waits for the response to this request, as in lock-step mode.
+  Expected<const WaterSamples*> sample_water(const BorrowedWaterPoints& request);
   // The loads of the response that was returned last, see ChannelOptions::wait_for_loads.
   const BodiesLoads& loads() const { return channel_.latest_loads(); }
   // See LcmRequestChannel.
@@ -49,6 +51,7 @@ class FreeRunningClient {
   };
 
   bool wait_for(std::int64_t seq, Clock::time_point deadline);
+  void record_arrivals();
 
   LcmRequestChannel channel_;
   RetryPolicy retry_policy_;

@@ -60,6 +60,19 @@ void LcmRequestChannel::Inbox::receive_loads(Bytes bytes) {
   complete();
 }
 
+void LcmRequestChannel::Inbox::receive_samples(Bytes bytes) {
+  if (decode(bytes, incoming_samples)) {
+    ++malformed;
+    return;
+  }
+  const RequestId& id = incoming_samples.id;
+  if (id.session_id != session_id || id.seq > last_points_sent || (samples_seq && id.seq <= *samples_seq)) {
+    return;
+  }
+  samples_seq = id.seq;
+  std::swap(samples, incoming_samples);
+}
+
 void LcmRequestChannel::Inbox::receive_status(Bytes bytes) {
   if (decode(bytes, status)) return;
   ++statuses;
@@ -192,6 +205,36 @@ Expected<void> LcmRequestChannel::resend() {
   return publish(repeated_);
 }
 
+Expected<void> LcmRequestChannel::check_points(std::size_t points) const {
+  const std::size_t bytes = water_samples_size(points);
+  if (!connection_.is_network() || bytes <= kMaxMessageBytes) return {};
+  return check_message_size("water at " + std::to_string(points) + " points", bytes);
+}
+
+Expected<void> LcmRequestChannel::send(const BorrowedWaterPoints& request) {
+  const std::size_t points = request.points.size();
+  if (Expected<void> checked = check_points(points); !checked) return checked;
+  if (!receives_samples_) {
+    Expected<void> subscribed = connection_.subscribe(
+        options_.water_samples_channel,
+        [inbox = inbox_.get()](Bytes bytes, std::string_view /*channel*/) { inbox->receive_samples(bytes); });
+    if (!subscribed) return subscribed;
+    receives_samples_ = true;
+  }
+  if (points > reserved_points_) {
+    connection_.reserve_receive_buffer(water_samples_size(points));
+    reserved_points_ = points;
+  }
+  inbox_->session_id = request.id.session_id;
+  inbox_->last_points_sent = request.id.seq;
+  encode(request, points_bytes_);
+  return resend_points();
+}
+
+Expected<void> LcmRequestChannel::resend_points() {
+  return connection_.publish(options_.water_points_channel, points_bytes_);
+}
+
 Expected<void> LcmRequestChannel::publish(const std::vector<std::vector<std::uint8_t>>& conditions) {
   for (const std::vector<std::uint8_t>& bytes : conditions) {
     if (Expected<void> sent = connection_.publish(options_.condition_channel, bytes); !sent) return sent;
@@ -231,6 +274,10 @@ bool LcmRequestChannel::wait_for(std::int64_t seq, Clock::time_point deadline) {
   return wait_until([&] { return inbox_->has_response && inbox_->latest.id.seq >= seq; }, deadline);
 }
 
+bool LcmRequestChannel::wait_for_samples(std::int64_t seq, Clock::time_point deadline) {
+  return wait_until([&] { return inbox_->samples_seq && *inbox_->samples_seq >= seq; }, deadline);
+}
+
 const ServiceStatus* LcmRequestChannel::wait_for_status(Clock::time_point deadline) {
   const std::int64_t before = inbox_->statuses;
   return wait_until([&] { return inbox_->statuses > before; }, deadline) ? &inbox_->status : nullptr;
@@ -240,6 +287,11 @@ std::string LcmRequestChannel::describe_endpoint() const {
   const std::string& wrenches = options_.wrenches_channel;
   return connection_.url() + ", channels " + options_.states_channel +
          (options_.wait_for_loads ? ", " + wrenches + " and " + options_.loads_channel : " and " + wrenches);
+}
+
+std::string LcmRequestChannel::describe_points_endpoint() const {
+  return connection_.url() + ", channels " + options_.water_points_channel + " and " +
+         options_.water_samples_channel;
 }
 
 }  // namespace buoyancy

@@ -5,6 +5,8 @@
 // loads are waited for, the same holds for them, and a response counts as arrived once the loads with its seq
 // have arrived too: a lost loads message is then requested again like a lost response.
 //
+// Requests for the water at points have sequence numbers and a newest response of their own.
+//
 // Two responses to one request that differ by more than their error bounds come from two services with
 // different scenes, or from a program that changes them. Not thread-safe.
 #pragma once
@@ -39,6 +41,8 @@ struct ChannelOptions {
   std::string wrenches_channel{kWrenchesChannel};
   std::string loads_channel{kLoadsChannel};
   std::string condition_channel{kConditionChannel};  // for set_conditions()
+  std::string water_points_channel{kWaterPointsChannel};
+  std::string water_samples_channel{kWaterSamplesChannel};
   std::string status_channel{kStatusChannel};
   // scene_fingerprint() of the caller's scene: compared with that of every service on the status channel, see
   // scene_warning(). nullopt: not compared.
@@ -58,8 +62,9 @@ class LcmRequestChannel {
   // Errors: those of LcmConnection::open.
   static Expected<LcmRequestChannel> open(const ChannelOptions& options);
 
-  // Errors: a message cannot carry this many bodies.
+  // Errors: a message cannot carry this many bodies; the response to this many points.
   Expected<void> check_size(std::size_t bodies) const;
+  Expected<void> check_points(std::size_t points) const;
 
   // Prepares for requests about this many bodies: enlarges the receive buffer for their responses. Returns a
   // warning if responses may lose packets because the kernel grants a smaller buffer. send() does the same,
@@ -75,22 +80,30 @@ class LcmRequestChannel {
   Expected<void> send(const BorrowedRequest& request);
   // Publishes the bytes of the last request again.
   Expected<void> resend();
+  // The same for the water at points: session_id is that of all requests. The first call subscribes to the
+  // responses. Errors: those of check_points(), a failed subscription, and those of LcmConnection::publish.
+  Expected<void> send(const BorrowedWaterPoints& request);
+  Expected<void> resend_points();
 
   // Waits until a response with at least this seq has arrived, at most until the deadline. Processes messages
   // that have already arrived even if the deadline has passed. Returns false if there is no such response.
   bool wait_for(std::int64_t seq, Clock::time_point deadline);
+  // The same for the response to a request for the water at points.
+  bool wait_for_samples(std::int64_t seq, Clock::time_point deadline);
   // Waits for the next status of a service. Returns nullptr if none arrives before the deadline.
   const ServiceStatus* wait_for_status(Clock::time_point deadline);
-  // The session's responses that arrived during the last wait_for(), including duplicates and old ones.
+  // The session's responses that arrived since the last wait_for() began, including duplicates and old ones.
   const std::vector<ResponseArrival>& arrivals() const { return inbox_->arrivals; }
 
   // Makes wait_for() wait for another response to the same request.
   void discard_response() { inbox_->has_response = false; }
+  void discard_samples() { inbox_->samples_seq.reset(); }
 
   bool has_response() const { return inbox_->has_response; }
   const WrenchResponse& latest_response() const { return inbox_->latest; }  // requires has_response()
   // The loads that belong to latest_response(); without bodies unless they are waited for.
   const BodiesLoads& latest_loads() const { return inbox_->latest_loads; }
+  const WaterSamples& latest_samples() const { return inbox_->samples; }
   bool waits_for_loads() const { return options_.wait_for_loads; }
   // Messages that were ignored because they are not valid, see ClientStats::malformed.
   std::int64_t malformed() const { return inbox_->malformed; }
@@ -113,6 +126,7 @@ class LcmRequestChannel {
 
   // "udpm://239.255.76.67:7667?ttl=0, channels BUOYANCY_STATES and BUOYANCY_WRENCHES", for errors.
   std::string describe_endpoint() const;
+  std::string describe_points_endpoint() const;  // likewise, of the water at points
 
  private:
   // Has a fixed address, because the connection's handler writes to it.
@@ -130,6 +144,10 @@ class LcmRequestChannel {
     WrenchResponse response;
     BodiesLoads loads;
     std::vector<ResponseArrival> arrivals;
+    std::int64_t last_points_sent = -1;
+    std::optional<std::int64_t> samples_seq;  // of `samples`; nullopt: none has arrived
+    WaterSamples samples;
+    WaterSamples incoming_samples;  // reused
     std::int64_t malformed = 0;
     std::optional<std::int64_t> scene_fingerprint;
     ServiceStatus status;  // the newest
@@ -139,6 +157,7 @@ class LcmRequestChannel {
 
     void receive(Bytes bytes);
     void receive_loads(Bytes bytes);
+    void receive_samples(Bytes bytes);
     void receive_status(Bytes bytes);
     void compare_with_latest();  // incoming, which has the same seq
     bool is_newer(const RequestId& id) const { return !has_response || id.seq > latest.id.seq; }
@@ -156,7 +175,10 @@ class LcmRequestChannel {
   LcmConnection connection_;
   std::vector<std::uint8_t> request_bytes_;
   std::vector<std::vector<std::uint8_t>> announced_, repeated_;  // encoded
+  std::vector<std::uint8_t> points_bytes_;
+  bool receives_samples_ = false;  // subscribed to
   std::size_t reserved_bodies_ = 0;
+  std::size_t reserved_points_ = 0;
   std::optional<Warning> buffer_warning_;  // of the last reserve()
 };
 

@@ -16,4 +16,11 @@ Expected<const WrenchResponse*> LockstepClient::request(const BorrowedRequest& r
   return response;
 }
 
+Expected<const WaterSamples*> LockstepClient::sample_water(const BorrowedWaterPoints& request) {
+  Expected<const WaterSamples*> samples =
+      sample_water_with_retries(channel_, request, retry_policy_, statistics_);
+  statistics_.malformed = channel_.malformed();
+  return samples;
+}
+
 }  // namespace buoyancy

@@ -26,6 +26,8 @@ class LockstepClient {
   Expected<std::optional<Warning>> reserve(std::size_t bodies) { return channel_.reserve(bodies); }
 
   Expected<const WrenchResponse*> request(const BorrowedRequest& request);
+  // Requests the water at points.
+  Expected<const WaterSamples*> sample_water(const BorrowedWaterPoints& request);
   // The loads of the response that was returned last, see ChannelOptions::wait_for_loads.
   const BodiesLoads& loads() const { return channel_.latest_loads(); }
   // See LcmRequestChannel.

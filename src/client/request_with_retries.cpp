@@ -1,6 +1,7 @@
 #include "client/request_with_retries.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "base/format.h"
@@ -28,6 +29,29 @@ bool lacks_sea(const WrenchResponse& response) {
   return std::ranges::find(response.bodies, BodyStatus::kNoSea, &BodyWrench::status) != response.bodies.end();
 }
 
+// Calls send(), and resend() after each timeout until wait(deadline, is_last) is true or the retries are used
+// up. Returns when the request was sent first; nullopt: there is no response, or the waiting was cancelled. A
+// failed sending counts as a lost request; `sent` is the result of the last one.
+template <typename Send, typename Resend, typename Wait>
+std::optional<Clock::time_point> exchange(const LcmRequestChannel& channel, const RetryPolicy& retry_policy,
+                                          ClientStats& statistics, Expected<void>& sent, const Send& send,
+                                          const Resend& resend, const Wait& wait) {
+  const Clock::time_point sent_at = Clock::now();
+  ++statistics.requests;
+  sent = send();
+  for (std::int64_t retries = 0;; ++retries) {
+    if (wait(Clock::now() + to_duration(retry_policy.timeout), retries == retry_policy.max_retries))
+      return sent_at;
+    if (channel.cancelled()) return std::nullopt;
+    if (retries == retry_policy.max_retries) {
+      ++statistics.unanswered;
+      return std::nullopt;
+    }
+    ++statistics.retries;
+    sent = resend();
+  }
+}
+
 }  // namespace
 
 Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
@@ -37,28 +61,67 @@ Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
   if (const Expected<void> checked = channel.check_size(request.bodies.size()); !checked) {
     return make_error(checked.error());
   }
-  const Clock::time_point sent_at = Clock::now();
-  ++statistics.requests;
-  Expected<void> sent = channel.send(request);
-  for (std::int64_t retries = 0;; ++retries) {
-    const Clock::time_point deadline = Clock::now() + to_duration(retry_policy.timeout);
-    while (channel.wait_for(request.id.seq, deadline)) {
-      if (retries < retry_policy.max_retries && lacks_sea(channel.latest_response())) {
-        channel.discard_response();
-        continue;
-      }
-      statistics.round_trip.add(to_seconds(channel.arrivals().back().at - sent_at));
-      return check_response(channel, request, channel.latest_response());
-    }
-    if (channel.cancelled()) return cancelled_error(channel, request.id.seq);
-    if (retries == retry_policy.max_retries) {
-      ++statistics.unanswered;
-      if (!sent) return make_error(sent.error());
-      return no_response_error(channel, request.id.seq, to_seconds(Clock::now() - sent_at));
-    }
-    ++statistics.retries;
-    sent = channel.resend();
+  const std::int64_t seq = request.id.seq;
+  const Clock::time_point start = Clock::now();
+  Expected<void> sent;
+  const auto sent_at = exchange(
+      channel, retry_policy, statistics, sent, [&] { return channel.send(request); },
+      [&] { return channel.resend(); },
+      [&](Clock::time_point deadline, bool is_last) {
+        while (channel.wait_for(seq, deadline)) {
+          if (is_last || !lacks_sea(channel.latest_response())) return true;
+          channel.discard_response();
+        }
+        return false;
+      });
+  if (sent_at) {
+    statistics.round_trip.add(to_seconds(channel.arrivals().back().at - *sent_at));
+    return check_response(channel, request, channel.latest_response());
   }
+  if (channel.cancelled()) return cancelled_error(channel, seq);
+  if (!sent) return make_error(sent.error());
+  return no_response_error(channel, seq, to_seconds(Clock::now() - start));
+}
+
+Expected<const WaterSamples*> sample_water_with_retries(LcmRequestChannel& channel,
+                                                        const BorrowedWaterPoints& request,
+                                                        const RetryPolicy& retry_policy,
+                                                        ClientStats& statistics) {
+  if (const Expected<void> checked = channel.check_points(request.points.size()); !checked) {
+    return make_error(checked.error());
+  }
+  const std::int64_t seq = request.id.seq;
+  const std::string what = "request " + std::to_string(seq) + " for the water at " +
+                           std::to_string(request.points.size()) + " points on " +
+                           channel.describe_points_endpoint();
+  const Clock::time_point start = Clock::now();
+  Expected<void> sent;
+  const auto sent_at = exchange(
+      channel, retry_policy, statistics, sent, [&] { return channel.send(request); },
+      [&] { return channel.resend_points(); },
+      [&](Clock::time_point deadline, bool is_last) {
+        while (channel.wait_for_samples(seq, deadline)) {
+          if (is_last || channel.latest_samples().status != BodyStatus::kNoSea) return true;
+          channel.discard_samples();
+        }
+        return false;
+      });
+  if (!sent_at) {
+    if (channel.cancelled()) {
+      return make_error({what, "cancelled while waiting", "a response from buoyancyd", "", ""});
+    }
+    if (!sent) return make_error(sent.error());
+    return make_error(
+        {what, "no response for " + format_number(to_seconds(Clock::now() - start), 3) + " s",
+         "a response from buoyancyd",
+         "no buoyancyd is running on this LCM URL and these channels, or it rejects the request",
+         "Start buoyancyd with the same URL and channels; if it is running, see its log"});
+  }
+  statistics.round_trip.add(to_seconds(Clock::now() - *sent_at));
+  const WaterSamples& samples = channel.latest_samples();
+  if (samples.samples.size() == request.points.size()) return &samples;
+  return make_error({what, "a response of " + std::to_string(samples.samples.size()) + " points",
+                     "one sample per point", "a program other than buoyancyd publishes on the channel", ""});
 }
 
 Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel,

@@ -18,6 +18,13 @@ Expected<const WrenchResponse*> request_with_retries(LcmRequestChannel& channel,
                                                      const RetryPolicy& retry_policy,
                                                      ClientStats& statistics);
 
+// The same for the water at points. Errors: those of retry_policy.h, with other points than requested in the
+// place of other bodies.
+Expected<const WaterSamples*> sample_water_with_retries(LcmRequestChannel& channel,
+                                                        const BorrowedWaterPoints& request,
+                                                        const RetryPolicy& retry_policy,
+                                                        ClientStats& statistics);
+
 // Returns the response, or an error if it does not hold the request's bodies in the request's order, or if
 // its loads hold other bodies.
 Expected<const WrenchResponse*> check_response(const LcmRequestChannel& channel,

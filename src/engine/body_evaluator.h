@@ -88,6 +88,7 @@ class BodyEvaluator {
   }
 
   unsigned thread_count() const { return thread_pool_.thread_count(); }
+  ThreadPool& threads() { return thread_pool_; }  // for other work between two calls of evaluate()
   const Scene& scene() const { return *scene_; }
 
  private:

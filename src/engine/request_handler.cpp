@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/body_evaluation.h"
+#include "engine/water_points.h"
 #include "messages/wire_views.h"
 
 namespace buoyancy {
@@ -64,28 +65,33 @@ void RequestHandler::set_scene(const Scene& scene) {
 RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
   ++counters_.requests;
   last_session_.reset();
-  const auto request = RequestView::of(bytes);
-  if (!request) {
-    count_decode_error(request.error());
+  const auto header = peek_request(bytes);
+  if (!header) {
+    count_decode_error(header.error());
     return Step::kRejected;
   }
+  const bool has_bodies = header->kind == RequestKind::kBodies;
   const std::size_t scene_bodies = scene_->bodies().size();
-  if (request->size() > scene_bodies && request->size() - scene_bodies > budgets_.extra_bodies) {
+  if (has_bodies && header->size > scene_bodies && header->size - scene_bodies > budgets_.extra_bodies) {
     ++counters_.rejected_bodies;
     return Step::kRejected;
   }
+  if (!has_bodies && water_samples_size(header->size) > budgets_.message_bytes) {
+    ++counters_.rejected_points;
+    return Step::kRejected;
+  }
 
-  const RequestId& id = request->id();
-  const auto known = std::ranges::find(sessions_, id.session_id, &Session::id);
+  const RequestId& id = header->id;
+  const auto known = std::ranges::find(sessions_, header->session(), &Session::key);
   const bool is_new = known == sessions_.end();
-  if (!is_new && is_retry(*known, *request, bytes)) {
+  if (!is_new && is_retry(*known, *header, bytes)) {
     ++counters_.retries;
     known->last_use = ++use_;
     if (known->work.in_progress) return Step::kStarted;
     last_session_ = static_cast<std::size_t>(known - sessions_.begin());
     return Step::kAnswered;
   }
-  Session* const found = is_new ? start_session(id) : &*known;
+  Session* const found = is_new ? start_session(*header) : &*known;
   if (found == nullptr || found->work.in_progress) {
     --counters_.requests;
     return Step::kBusy;
@@ -95,11 +101,11 @@ RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
   const auto index = static_cast<std::size_t>(&session - sessions_.data());
   const bool conflicts =
       !session.last_request.empty() && id.seq == session.last_seq && !same_bytes(session.last_request, bytes);
-  if (checks_motion_) check_motion(session, *request);
+  if (checks_motion_ && has_bodies) check_motion(session, RequestView::of(bytes).value());
   return finish(index, [&] {
-    bool has_room = begin_work(*request, bytes.size(), session);
-    const WaterAtTime::Change now = water_.move_to(id.utime, request->lead_time());
-    const bool complete = has_room && advance(*request, session, now, deadline);
+    bool has_room = begin_work(*header, bytes, session);
+    const WaterAtTime::Change now = water_.move_to(id.utime, header->lead_time);
+    const bool complete = has_room && advance(bytes, session, now, deadline);
     session.lacks_sea = now.water.at_rest == nullptr;
     if (!complete && in_progress_.size() == kMaxInProgress) has_room = false;
     if (!has_room) {
@@ -120,7 +126,7 @@ RequestHandler::Step RequestHandler::begin(Bytes bytes, Deadline deadline) {
     if (!complete) {
       ++counters_.requests_sliced;
       session.work.in_progress = true;
-      session.work.sea = water_.sea_at(id.utime, request->lead_time());
+      session.work.sea = water_.sea_at(id.utime, header->lead_time);
       in_progress_.push_back(index);
       return Step::kStarted;
     }
@@ -151,21 +157,21 @@ RequestHandler::Step RequestHandler::resume(Deadline deadline) {
   in_progress_.erase(in_progress_.begin());
   Session& session = sessions_[index];
   Work& work = session.work;
-  const RequestView request = RequestView::of(session.last_request).value();
-  const RequestId& id = request.id();
+  const RequestHeader header = peek_request(session.last_request).value();
+  const RequestId& id = header.id;
   const auto start = std::chrono::steady_clock::now();
   return finish(index, [&] {
     bool has_room = true;
     WaterAtTime::Change now;
     if (work.changes != changes_) {
-      has_room = begin_work(request, session.last_request.size(), session);
-      now = water_.move_to(id.utime, request.lead_time());
-      work.sea = water_.sea_at(id.utime, request.lead_time());
+      has_room = begin_work(header, session.last_request, session);
+      now = water_.move_to(id.utime, header.lead_time);
+      work.sea = water_.sea_at(id.utime, header.lead_time);
       session.lacks_sea = now.water.at_rest == nullptr;
     } else if (work.sea != nullptr) {
-      now = water_.move_to(work.sea, id.utime, request.lead_time());
+      now = water_.move_to(work.sea, id.utime, header.lead_time);
     }
-    const bool complete = has_room && advance(request, session, now, deadline);
+    const bool complete = has_room && advance(session.last_request, session, now, deadline);
     update_retained(session);
     work.spent += std::chrono::steady_clock::now() - start;
     if (!complete && has_room && work.spent <= budgets_.computing) {
@@ -183,26 +189,26 @@ RequestHandler::Step RequestHandler::resume(Deadline deadline) {
   });
 }
 
-RequestHandler::Pace RequestHandler::pace_of(std::int64_t session_id) const {
-  const auto known = std::ranges::find(sessions_, session_id, &Session::id);
+RequestHandler::Pace RequestHandler::pace_of(const SessionKey& session) const {
+  const auto known = std::ranges::find(sessions_, session, &Session::key);
   return known == sessions_.end() ? Pace::kUnknown : known->pace;
 }
 
-bool RequestHandler::is_retry(std::int64_t session_id, Bytes request) const {
-  const auto known = std::ranges::find(sessions_, session_id, &Session::id);
-  const auto view = RequestView::of(request);
-  return known != sessions_.end() && view && is_retry(*known, *view, request);
+bool RequestHandler::is_retry(const SessionKey& session, Bytes request) const {
+  const auto known = std::ranges::find(sessions_, session, &Session::key);
+  const auto header = peek_request(request);
+  return known != sessions_.end() && header && is_retry(*known, *header, request);
 }
 
-bool RequestHandler::is_retry(const Session& session, const RequestView& request, Bytes bytes) const {
+bool RequestHandler::is_retry(const Session& session, const RequestHeader& header, Bytes bytes) const {
   if (!same_bytes(session.last_request, bytes)) return false;
   return session.work.in_progress || !session.lacks_sea ||
-         water_.sea_at(request.id().utime, request.lead_time()) == nullptr;
+         water_.sea_at(header.id.utime, header.lead_time) == nullptr;
 }
 
-bool RequestHandler::has_room_for(std::int64_t session_id) const {
+bool RequestHandler::has_room_for(const SessionKey& session) const {
   if (in_progress_.size() == kMaxInProgress) return false;
-  const auto known = std::ranges::find(sessions_, session_id, &Session::id);
+  const auto known = std::ranges::find(sessions_, session, &Session::key);
   return known == sessions_.end() || !known->work.in_progress;
 }
 
@@ -236,8 +242,8 @@ void RequestHandler::reset() {
   for (CachedHydrostatics& cached : cached_hydrostatics_) cached.valid = false;
 }
 
-std::optional<std::int64_t> RequestHandler::newest_seq(std::int64_t session_id) const {
-  const auto known = std::ranges::find(sessions_, session_id, &Session::id);
+std::optional<std::int64_t> RequestHandler::newest_seq(const SessionKey& session) const {
+  const auto known = std::ranges::find(sessions_, session, &Session::key);
   if (known == sessions_.end()) return std::nullopt;
   return known->newest_seq;
 }
@@ -273,7 +279,7 @@ void RequestHandler::count_decode_error(DecodeError error) {
   }
 }
 
-RequestHandler::Session* RequestHandler::start_session(const RequestId& first) {
+RequestHandler::Session* RequestHandler::start_session(const RequestHeader& first) {
   Session* session = nullptr;
   if (sessions_.size() < max_sessions_) {
     session = &sessions_.emplace_back();
@@ -285,8 +291,8 @@ RequestHandler::Session* RequestHandler::start_session(const RequestId& first) {
     session->last_request.clear();
     ++counters_.sessions_evicted;
   }
-  session->id = first.session_id;
-  session->newest_seq = first.seq;
+  session->key = first.session();
+  session->newest_seq = first.id.seq;
   session->pace = Pace::kUnknown;
   session->motion = {};
   return session;
@@ -301,10 +307,12 @@ std::size_t RequestHandler::count_states_with(bool Body::*output, const RequestV
   return count;
 }
 
-bool RequestHandler::begin_work(const RequestView& request, std::size_t request_bytes, Session& session) {
+bool RequestHandler::begin_work(const RequestHeader& header, Bytes request, Session& session) {
+  const bool has_bodies = header.kind == RequestKind::kBodies;
   const auto wanted = [&](std::size_t bodies_with_output, bool Body::*output,
                           std::size_t (*size)(std::size_t)) {
-    std::size_t count = bodies_with_output > 0 ? count_states_with(output, request) : 0;
+    if (!has_bodies || bodies_with_output == 0) return std::size_t{0};
+    std::size_t count = count_states_with(output, RequestView::of(request).value());
     if (count > 0 && size(count) > budgets_.message_bytes) {
       ++counters_.outputs_too_large;
       count = 0;
@@ -314,9 +322,9 @@ bool RequestHandler::begin_work(const RequestView& request, std::size_t request_
   const std::size_t hydrostatics =
       wanted(scene_->bodies_with_hydrostatics(), &Body::hydrostatics, hydrostatics_size);
   const std::size_t loads = wanted(scene_->bodies_with_loads(), &Body::loads, loads_size);
-  const std::size_t bytes = request_bytes + response_size(request.size()) +
-                            (hydrostatics > 0 ? hydrostatics_size(hydrostatics) : 0) +
-                            (loads > 0 ? loads_size(loads) : 0);
+  const std::size_t bytes =
+      request.size() + (has_bodies ? response_size(header.size) : water_samples_size(header.size)) +
+      (hydrostatics > 0 ? hydrostatics_size(hydrostatics) : 0) + (loads > 0 ? loads_size(loads) : 0);
   Work& work = session.work;
   work.next = 0;
   work.unfinished.clear();
@@ -329,13 +337,17 @@ bool RequestHandler::begin_work(const RequestView& request, std::size_t request_
     session.last_request.clear();
   }
   if (!make_room(session, bytes)) return false;
-  ResponseWriter(request.id(), request.size(), session.last_response);
+  if (has_bodies) {
+    ResponseWriter(header.id, header.size, session.last_response);
+  } else {
+    WaterSamplesWriter(header.id, header.size, session.last_response);
+  }
   session.last_hydrostatics.clear();
   if (hydrostatics > 0) {
-    BodiesWriter<BodiesHydrostatics>(request.id(), hydrostatics, session.last_hydrostatics);
+    BodiesWriter<BodiesHydrostatics>(header.id, hydrostatics, session.last_hydrostatics);
   }
   session.last_loads.clear();
-  if (loads > 0) BodiesWriter<BodiesLoads>(request.id(), loads, session.last_loads);
+  if (loads > 0) BodiesWriter<BodiesLoads>(header.id, loads, session.last_loads);
   return true;
 }
 
@@ -373,15 +385,42 @@ void RequestHandler::discard_reply(Session& session) {
   update_retained(session);
 }
 
-bool RequestHandler::advance(const RequestView& request, Session& session, const WaterAtTime::Change& now,
+bool RequestHandler::advance(Bytes bytes, Session& session, const WaterAtTime::Change& now,
                              Deadline deadline) {
   if (now.changed) evaluator_.clear_cache();
+  if (session.key.kind == RequestKind::kWaterPoints) {
+    return sample_water(bytes, session, now.water, deadline);
+  }
+  const RequestView request = RequestView::of(bytes).value();
   apply_conditions(request.id().utime);
   while (session.work.next < request.size()) {
     if (!evaluate_part(request, session, now.water, deadline)) return false;
     if (session.work.next < request.size() && has_passed(deadline)) return false;
   }
   return session.last_hydrostatics.empty() || compute_hydrostatics(request, session, deadline);
+}
+
+bool RequestHandler::sample_water(Bytes request, Session& session, const WaterState& water,
+                                  Deadline deadline) {
+  constexpr double kPartTime = 1e6;  // [ns], of a thread
+  const WaterPointsView points = WaterPointsView::of(request).value();
+  WaterSamplesWriter samples(session.last_response);
+  std::size_t& next = session.work.next;
+  BodyStatus status = next == 0 ? check_points(points, water) : BodyStatus::kOk;
+  while (status == BodyStatus::kOk && next < points.size()) {
+    const double part = kPartTime * thread_count() / estimated_time_per_point(water);
+    const std::size_t end =
+        std::min(points.size(), next + std::max(static_cast<std::size_t>(part), std::size_t{1}));
+    if (!sample_points(points, next, end, water, scene_->current(), evaluator_.threads(), samples)) {
+      status = BodyStatus::kOutOfRange;
+    }
+    next = end;
+    if (status == BodyStatus::kOk && next < points.size() && has_passed(deadline)) return false;
+  }
+  if (status != BodyStatus::kOk) samples.fail(status);
+  (status == BodyStatus::kOk ? counters_.water_points : counters_.water_points_failed) +=
+      static_cast<std::int64_t>(points.size());
+  return true;
 }
 
 bool RequestHandler::evaluate_part(const RequestView& request, Session& session, const WaterState& water,

@@ -1,6 +1,6 @@
-// Handles requests: takes the bytes of a request and returns the bytes of its response. The live service, the
-// replay and an embedded client share it; it has no transport, and a clock only where begin() is given a
-// deadline.
+// Handles requests, for the wrenches on bodies or the water at points: takes the bytes of a request and
+// returns the bytes of its response. The live service, the replay and an embedded client share it; it has no
+// transport, and a clock only where begin() is given a deadline.
 //
 // Contract:
 // - The response carries the request's (utime, session_id, seq).
@@ -45,7 +45,8 @@ struct RequestBudgets {
   static constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
 
   std::size_t extra_bodies = kUnlimited;    // more than the scene has: repeated or unknown ids
-  std::size_t message_bytes = kUnlimited;   // of hydrostatics and loads; larger ones are left out
+  std::size_t message_bytes = kUnlimited;   // of hydrostatics and loads, larger ones are left out; of samples
+                                            // of the water, requests for more points are rejected
   std::size_t retained_bytes = kUnlimited;  // of all requests in progress and all stored replies
   std::chrono::nanoseconds computing = std::chrono::nanoseconds::max();  // in its resume() calls
 };
@@ -88,23 +89,24 @@ class RequestHandler {
     return begin(request, kNoDeadline) == Step::kAnswered ? last_response() : Bytes();
   }
 
-  // Handles the request until the deadline, and leaves the other bodies in progress: a body is not divided. A
-  // retry of a request in progress is counted, and answered with it.
+  // Handles the request until the deadline, and leaves the other bodies or points in progress: a body is not
+  // divided. A retry of a request in progress is counted, and answered with it.
   Step begin(Bytes request, Deadline deadline);
   // Continues a request in progress; several take turns. Precondition: in_progress() > 0.
   Step resume(Deadline deadline);
   std::size_t in_progress() const { return in_progress_.size(); }
   // The session of the request that resume() goes on with. Precondition: in_progress() > 0.
-  std::int64_t next_session_id() const { return sessions_[in_progress_.front()].id; }
+  SessionKey next_session() const { return sessions_[in_progress_.front()].key; }
   // Has the session no request in progress, and is there room for one more?
-  bool has_room_for(std::int64_t session_id) const;
+  bool has_room_for(const SessionKey& session) const;
   // Returns how many slices the last request of a session took.
   enum class Pace { kUnknown, kOneSlice, kSeveralSlices };
-  Pace pace_of(std::int64_t session_id) const;
+  Pace pace_of(const SessionKey& session) const;
   // Is it a retry of the session's last request, which begin() answers or counts without computing?
-  bool is_retry(std::int64_t session_id, Bytes request) const;
+  bool is_retry(const SessionKey& session, Bytes request) const;
 
-  // The response of the last call that was answered, valid until the next call.
+  // The response of the last call that was answered, valid until the next call: a body_wrenches_t, or a
+  // water_samples_t if its session (last_session()) is one of points.
   Bytes last_response() const {
     return last_session_ ? Bytes(sessions_[*last_session_].last_response) : Bytes();
   }
@@ -120,7 +122,7 @@ class RequestHandler {
   Bytes last_loads() const { return last_session_ ? Bytes(sessions_[*last_session_].last_loads) : Bytes(); }
 
   // The session of the last request. Precondition: it was answered.
-  std::int64_t last_session_id() const { return sessions_[last_session_.value()].id; }
+  SessionKey last_session() const { return sessions_[last_session_.value()].key; }
 
   // Receives a sea_state_t or sea_grid_t for a scene that receives it (Scene::receives_sea()); see
   // SeaTimeline. Counts it. Errors: those of SeaTimeline::receive(); then nothing changes.
@@ -168,7 +170,7 @@ class RequestHandler {
   // Discards sessions and cached results; the counters stay.
   void reset();
   // The newest seq handled in the session; nullopt: unknown session.
-  std::optional<std::int64_t> newest_seq(std::int64_t session_id) const;
+  std::optional<std::int64_t> newest_seq(const SessionKey& session) const;
 
   // Returns where velocities contradicted the motion since the last call, see MotionCheck. All findings are
   // counted; of many at once only the first are kept.
@@ -185,7 +187,7 @@ class RequestHandler {
   // How far a request has come.
   struct Work {
     bool in_progress = false;               // between two slices
-    std::size_t next = 0;                   // the states before it are evaluated
+    std::size_t next = 0;                   // the states or points before it are evaluated
     std::vector<std::uint32_t> unfinished;  // of the part from next on; empty: all of it
     bool has_failures = false;              // in that part
     std::size_t loads = 0;                  // number of loads of the states before next
@@ -196,7 +198,7 @@ class RequestHandler {
     std::chrono::nanoseconds spent{0};      // in resume()
   };
   struct Session {
-    std::int64_t id = 0;
+    SessionKey key{0};
     std::int64_t newest_seq = 0;
     std::int64_t last_seq = 0;
     std::uint64_t last_use = 0;              // value of use_ at the last use; the smallest is evicted first
@@ -219,20 +221,20 @@ class RequestHandler {
   void count_decode_error(DecodeError error);
   void check_motion(Session& session, const RequestView& request);
   // Is it the session's last request, and is its response still that of the water at its time?
-  bool is_retry(const Session& session, const RequestView& request, Bytes bytes) const;
+  bool is_retry(const Session& session, const RequestHeader& header, Bytes bytes) const;
   void record_failures(const RequestView& request, std::size_t begin, std::size_t end,
                        const ResponseWriter& response);
   // Evicts the least recently used session if necessary; nullptr: all have a request in progress.
-  Session* start_session(const RequestId& first);
+  Session* start_session(const RequestHeader& first);
   // Begins a request, or begins it again. False: there is no room for what it will retain.
-  bool begin_work(const RequestView& request, std::size_t request_bytes, Session& session);
+  bool begin_work(const RequestHeader& header, Bytes request, Session& session);
   // Runs a step of the work on a session's request, and counts the request if it is then answered, or
   // rejected because the step throws std::bad_alloc.
   template <typename Task>
   Step finish(std::size_t index, const Task& task);
   // Works on a request until it is complete, or until the deadline. Returns whether it is complete.
-  bool advance(const RequestView& request, Session& session, const WaterAtTime::Change& now,
-               Deadline deadline);
+  bool advance(Bytes request, Session& session, const WaterAtTime::Change& now, Deadline deadline);
+  bool sample_water(Bytes request, Session& session, const WaterState& water, Deadline deadline);
   bool evaluate_part(const RequestView& request, Session& session, const WaterState& water,
                      Deadline deadline);
   bool compute_hydrostatics(const RequestView& request, Session& session, Deadline deadline);

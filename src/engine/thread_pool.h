@@ -24,4 +24,15 @@ class ThreadPool {
   TbbArena arena_;
 };
 
+// Do several threads pay for this many calls of this time [ns]? Dispatching work to them costs about 10 us.
+inline bool pays_in_parallel(std::size_t count, double time_each) {
+  constexpr double kMinParallelWork = 5e4;  // [ns]
+  return count > 1 && time_each * static_cast<double>(count) >= kMinParallelWork;
+}
+
+// Calls task(begin, end) for ranges that partition [0, count), on several threads if that pays.
+// time_each: [ns], estimated, > 0. No heap allocation.
+void run_chunks(ThreadPool& pool, std::size_t count, double time_each,
+                const std::function<void(std::size_t, std::size_t)>& task);
+
 }  // namespace buoyancy

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,6 +22,29 @@ struct RequestId {
   std::int64_t utime = 0;  // [us], the client's clock
   std::int64_t session_id = 0;
   std::int64_t seq = 0;
+};
+
+// What a request asks about: the bodies of a body_states_t or the points of a water_points_t.
+enum class RequestKind : std::uint8_t { kBodies, kWaterPoints };
+
+// Sessions are of one kind: requests of two kinds with the same session_id belong to two sessions.
+struct SessionKey {
+  std::int64_t id = 0;
+  RequestKind kind = RequestKind::kBodies;
+
+  // NOLINTNEXTLINE(google-explicit-constructor): most sessions are of bodies
+  SessionKey(std::int64_t session_id, RequestKind of = RequestKind::kBodies) : id(session_id), kind(of) {}
+  bool operator==(const SessionKey&) const = default;
+};
+
+// What the fixed fields of a request say.
+struct RequestHeader {
+  RequestKind kind = RequestKind::kBodies;
+  RequestId id;
+  double lead_time = 0.0;  // [s], of bodies
+  std::size_t size = 0;    // number of bodies or points
+
+  SessionKey session() const { return {id.session_id, kind}; }
 };
 
 struct WrenchRequest {

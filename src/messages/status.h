@@ -27,6 +27,7 @@ struct ServiceCounters {
   std::int64_t rejected_count = 0;
   std::int64_t rejected_length = 0;
   std::int64_t rejected_bodies = 0;
+  std::int64_t rejected_points = 0;
   std::int64_t rejected_work = 0;
   std::int64_t rejected_busy = 0;
   std::int64_t rejected_memory = 0;
@@ -51,12 +52,14 @@ struct ServiceCounters {
   std::int64_t bodies_below_bed = 0;
   std::int64_t wave_patches = 0;
   std::int64_t hydrostatics = 0;
+  std::int64_t water_points = 0;
+  std::int64_t water_points_failed = 0;
   double largest_dropped_force = 0.0;
   double largest_dropped_torque = 0.0;
 
   std::int64_t rejected() const {
     return rejected_truncated + rejected_fingerprint + rejected_count + rejected_length + rejected_bodies +
-           rejected_work + rejected_busy + rejected_memory;
+           rejected_points + rejected_work + rejected_busy + rejected_memory;
   }
   // Adds the totals and takes the maximum of the largest_* fields.
   ServiceCounters& operator+=(const ServiceCounters& other);

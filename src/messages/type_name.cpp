@@ -13,6 +13,8 @@
 #include <buoyancy/sea_grid_t.hpp>
 #include <buoyancy/sea_state_t.hpp>
 #include <buoyancy/service_status_t.hpp>
+#include <buoyancy/water_points_t.hpp>
+#include <buoyancy/water_samples_t.hpp>
 
 #include "messages/bot_core.h"
 #include "messages/wire_layout.h"
@@ -31,7 +33,7 @@ std::string type_name(Bytes message) {
   std::uint64_t fingerprint = 0;
   if (message.size() < sizeof fingerprint) return "no fingerprint";
   BigEndianReader{message.data()}(fingerprint);
-  const std::array<std::pair<std::uint64_t, const char*>, 11> known{{
+  const std::array<std::pair<std::uint64_t, const char*>, 13> known{{
       {fingerprint_of<body_states_t>(), "buoyancy.body_states_t"},
       {fingerprint_of<body_wrenches_t>(), "buoyancy.body_wrenches_t"},
       {fingerprint_of<bodies_hydrostatics_t>(), "buoyancy.bodies_hydrostatics_t"},
@@ -40,6 +42,8 @@ std::string type_name(Bytes message) {
       {fingerprint_of<sea_grid_t>(), "buoyancy.sea_grid_t"},
       {fingerprint_of<sea_state_t>(), "buoyancy.sea_state_t"},
       {fingerprint_of<service_status_t>(), "buoyancy.service_status_t"},
+      {fingerprint_of<water_points_t>(), "buoyancy.water_points_t"},
+      {fingerprint_of<water_samples_t>(), "buoyancy.water_samples_t"},
       {kBotPoseFingerprint, "bot_core.pose_t"},
       {kBotRigidTransformFingerprint, "bot_core.rigid_transform_t"},
       {kBotForceTorqueFingerprint, "bot_core.six_axis_force_torque_t"},

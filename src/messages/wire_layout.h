@@ -21,6 +21,7 @@
 #include "messages/sea_grid.h"
 #include "messages/sea_state.h"
 #include "messages/status.h"
+#include "messages/water_samples.h"
 
 namespace buoyancy {
 
@@ -94,13 +95,29 @@ template <MaybeConst<BodyLoads> Body, typename Visitor>
   visitor({"water_velocity", "m/s", "", "water_vx,water_vy,water_vz"}, body.water_velocity);
 }
 
+template <MaybeConst<WaterPoint> Point, typename Visitor>
+[[gnu::always_inline]] inline void visit_named_fields(Point& point, Visitor&& visitor) {
+  visitor({"points", "m"}, point.position);
+}
+
+// A water_samples_t has an array for each of these fields.
+template <MaybeConst<WaterSample> Sample, typename Visitor>
+[[gnu::always_inline]] inline void visit_named_fields(Sample& sample, Visitor&& visitor) {
+  visitor({"elevation", "m", "of the surface above or below the point, over the level"}, sample.elevation);
+  visitor({"pressure", "Pa", "over that of the air"}, sample.pressure);
+  visitor({"velocity", "m/s", "of current and waves"}, sample.velocity);
+  visitor({"density", "kg/m^3"}, sample.density);
+}
+
 template <typename T>
 concept BodyOfMessage = MaybeConst<T, BodyState> || MaybeConst<T, BodyWrench> ||
     MaybeConst<T, BodyHydrostatics> || MaybeConst<T, BodyLoads>;
+template <typename T>
+concept ElementOfMessage = BodyOfMessage<T> || MaybeConst<T, WaterPoint> || MaybeConst<T, WaterSample>;
 
-template <BodyOfMessage Body, typename Visitor>
-[[gnu::always_inline]] inline void visit_fields(Body& body, Visitor& visitor) {
-  visit_named_fields(body, [&visitor](const Field& /*field*/, auto& member) { visitor(member); });
+template <ElementOfMessage Element, typename Visitor>
+[[gnu::always_inline]] inline void visit_fields(Element& element, Visitor& visitor) {
+  visit_named_fields(element, [&visitor](const Field& /*field*/, auto& member) { visitor(member); });
 }
 
 template <MaybeConst<RequestId> Id, typename Visitor>
@@ -113,7 +130,7 @@ void visit_fields(Change& change, Visitor& visitor) {
   visitor(change.utime, change.body_id, change.kind, change.index, change.flooded, change.liquid_volume);
 }
 
-// A header holds the fields before the number of bodies.
+// A header holds the fields before the number of bodies, points or samples.
 template <MaybeConst<WrenchRequest> Message, typename Visitor>
 void visit_header(Message& request, Visitor& visitor) {
   visit_fields(request.id, visitor);
@@ -133,6 +150,17 @@ void visit_header(Message& hydrostatics, Visitor& visitor) {
 template <MaybeConst<BodiesLoads> Message, typename Visitor>
 void visit_header(Message& loads, Visitor& visitor) {
   visit_fields(loads.id, visitor);
+}
+
+template <MaybeConst<WaterPoints> Message, typename Visitor>
+void visit_header(Message& points, Visitor& visitor) {
+  visit_fields(points.id, visitor);
+}
+
+template <MaybeConst<WaterSamples> Message, typename Visitor>
+void visit_header(Message& samples, Visitor& visitor) {
+  visit_fields(samples.id, visitor);
+  visitor(samples.status);
 }
 
 // A sea consists of a header, the number of components, and an array for each of a component's numbers.
@@ -200,6 +228,7 @@ void visit_counters(Visitor&& visitor, C&... c) {
   visitor({"rejected_count"}, c.rejected_count...);
   visitor({"rejected_length"}, c.rejected_length...);
   visitor({"rejected_bodies"}, c.rejected_bodies...);
+  visitor({"rejected_points"}, c.rejected_points...);
   visitor({"rejected_work"}, c.rejected_work...);
   visitor({"rejected_busy"}, c.rejected_busy...);
   visitor({"rejected_memory"}, c.rejected_memory...);
@@ -224,6 +253,8 @@ void visit_counters(Visitor&& visitor, C&... c) {
   visitor({"bodies_below_bed"}, c.bodies_below_bed...);
   visitor({"wave_patches"}, c.wave_patches...);
   visitor({"hydrostatics"}, c.hydrostatics...);
+  visitor({"water_points"}, c.water_points...);
+  visitor({"water_points_failed"}, c.water_points_failed...);
   visitor({"largest_dropped_force"}, c.largest_dropped_force...);
   visitor({"largest_dropped_torque"}, c.largest_dropped_torque...);
 }
@@ -350,6 +381,31 @@ class BigEndianWriter {
   }
 
   std::uint8_t* bytes_;
+};
+
+// Encodes or decodes the visited fields of one element of a message that has an array for each field.
+// Coder: BigEndianReader or BigEndianWriter; Byte: what it takes.
+template <typename Coder, typename Byte>
+class ArrayFields {
+ public:
+  // arrays: the first of them. Precondition: element < count, and bytes holds, or has room for, all arrays.
+  ArrayFields(Byte* arrays, std::size_t count, std::size_t element)
+      : arrays_(arrays), count_(count), element_(element) {}
+
+  template <typename... Fields>
+  void operator()(Fields&... fields) {
+    (code(fields), ...);
+  }
+
+ private:
+  template <typename T>
+  void code(T& field) {
+    Coder(arrays_ + element_ * sizeof(field))(field);
+    arrays_ += count_ * sizeof(field);
+  }
+
+  Byte* arrays_;
+  std::size_t count_, element_;
 };
 
 }  // namespace buoyancy

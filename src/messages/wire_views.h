@@ -15,12 +15,12 @@
 
 namespace buoyancy {
 
-// Size [bytes] of a body in a message.
-template <typename Body>
-std::size_t encoded_body_size() {
-  const Body body;
+// Size [bytes] of a body, a point or a sample in a message.
+template <typename Element>
+std::size_t encoded_element_size() {
+  const Element element;
   LayoutSize layout;
-  visit_fields(body, layout);
+  visit_fields(element, layout);
   return layout.size();
 }
 
@@ -57,8 +57,31 @@ class RequestView {
   RequestId id_;
   double lead_time_ = 0.0;
   std::size_t size_ = 0;
-  std::size_t body_size_ = encoded_body_size<BodyState>();
+  std::size_t body_size_ = encoded_element_size<BodyState>();
   const std::uint8_t* bodies_ = nullptr;
+};
+
+class WaterPointsView {
+ public:
+  // Makes the checks of decode(). bytes must outlive the view. O(1).
+  static tl::expected<WaterPointsView, DecodeError> of(Bytes bytes);
+
+  std::size_t size() const { return size_; }  // number of points
+
+  // Precondition: i < size().
+  WaterPoint point(std::size_t i) const {
+    assert(i < size_);
+    WaterPoint point;
+    BigEndianReader reader(points_ + i * sizeof(point));
+    visit_fields(point, reader);
+    return point;
+  }
+
+ private:
+  WaterPointsView(const std::uint8_t* points, std::size_t size) : points_(points), size_(size) {}
+
+  const std::uint8_t* points_;
+  std::size_t size_;
 };
 
 // Message: WrenchResponse, BodiesHydrostatics or BodiesLoads.
@@ -94,9 +117,32 @@ class BodiesWriter {
 
  private:
   std::size_t size_ = 0;
-  std::size_t body_size_ = encoded_body_size<Body>();
+  std::size_t body_size_ = encoded_element_size<Body>();
   std::uint8_t* bodies_ = nullptr;
 };
 using ResponseWriter = BodiesWriter<WrenchResponse>;
+
+class WaterSamplesWriter {
+ public:
+  // Replaces bytes by a message of status kOk with this number of samples, all of which must be set; no heap
+  // allocation once its capacity suffices. bytes must outlive the writer.
+  WaterSamplesWriter(const RequestId& id, std::size_t samples, std::vector<std::uint8_t>& bytes);
+  // Continues a message that another writer has begun.
+  explicit WaterSamplesWriter(std::vector<std::uint8_t>& begun);
+
+  // Several threads may set different samples at once. Precondition: i < size().
+  void set(std::size_t i, const WaterSample& sample) {
+    assert(i < size_);
+    ArrayFields<BigEndianWriter, std::uint8_t> writer(samples_, size_, i);
+    visit_fields(sample, writer);
+  }
+
+  // Sets the status, and all samples to 0.
+  void fail(BodyStatus status);
+
+ private:
+  std::size_t size_;  // number of samples
+  std::uint8_t* samples_;
+};
 
 }  // namespace buoyancy

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,6 +25,7 @@
 #include "python/module.h"
 #include "python/pose_input.h"
 #include "python/scene_object.h"
+#include "python/status.h"
 #include "python/wrenches.h"
 #include "scene/scene_fingerprint.h"
 
@@ -106,7 +108,8 @@ std::unique_ptr<ClientObject> open(const std::optional<std::string>& lcm_url, co
                                    double timeout, std::int64_t max_retries, std::optional<double> interval,
                                    bool loads, const std::string& states_channel,
                                    const std::string& wrenches_channel, const std::string& loads_channel,
-                                   const std::string& status_channel) {
+                                   const std::string& status_channel, const std::string& points_channel,
+                                   const std::string& samples_channel) {
   check_seconds("timeout", timeout, "seconds above 0");
   if (max_retries < 0)
     throw py::value_error("max_retries = " + std::to_string(max_retries) + "; expected 0 or more");
@@ -120,6 +123,8 @@ std::unique_ptr<ClientObject> open(const std::optional<std::string>& lcm_url, co
   options.channel.wrenches_channel = wrenches_channel;
   options.channel.loads_channel = loads_channel;
   options.channel.status_channel = status_channel;
+  options.channel.water_points_channel = points_channel;
+  options.channel.water_samples_channel = samples_channel;
   if (object->scene != nullptr) options.channel.scene_fingerprint = scene_fingerprint(*object->scene);
   options.channel.wait_for_loads = loads;
   options.channel.cancelled = &object->closing;
@@ -255,6 +260,50 @@ py::object request(PyObject* self, const Arguments<9>& arguments) {
   return result;
 }
 
+py::dict sample_water(py::handle self, py::handle points, py::handle time, py::handle utime) {
+  auto& object = instance_of<ClientObject>(self);
+  const Numbers<double> given = to_numbers<double>(points.ptr(), "points");
+  if (given.ndim() != 2 || given.shape(1) != 3) {
+    throw py::value_error("points has shape " + shape_text(given) + "; expected (n, 3)");
+  }
+  std::vector<WaterPoint> positions(static_cast<std::size_t>(given.shape(0)));
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    std::copy_n(given.data() + 3 * i, 3, positions[i].position.begin());
+  const std::int64_t at = to_utime(time.ptr(), utime.ptr());
+  const BusyClient busy(object);
+  object.signals.start();
+  const auto samples = [&] {
+    const WithoutGil released;
+    return object.client->sample_water(at, positions);
+  }();
+  if (PyErr_Occurred() != nullptr) throw py::error_already_set();  // of a signal
+  if (!samples) {
+    if (object.closing) fail("was closed while it waited", "an open client", "");
+    throw ServiceException(samples.error());
+  }
+  py::dict fields;
+  fields["utime"] = (*samples)->id.utime;
+  fields["status"] = status_object((*samples)->status);
+  const auto add = [&](const char* name, auto WaterSample::*member) {
+    using Member = std::remove_reference_t<decltype(std::declval<WaterSample&>().*member)>;
+    constexpr std::size_t kWidth = sizeof(Member) / sizeof(double);
+    std::vector<py::ssize_t> shape{given.shape(0)};
+    if (kWidth > 1) shape.push_back(kWidth);
+    py::array_t<double> array(shape);
+    double* out = array.mutable_data();
+    for (const WaterSample& sample : (*samples)->samples) {
+      std::memcpy(out, &(sample.*member), sizeof(Member));
+      out += kWidth;
+    }
+    fields[name] = array;
+  };
+  add("elevation", &WaterSample::elevation);
+  add("pressure", &WaterSample::pressure);
+  add("velocity", &WaterSample::velocity);
+  add("density", &WaterSample::density);
+  return fields;
+}
+
 void close(py::handle self) {
   auto& object = instance_of<ClientObject>(self);
   object.closing = true;
@@ -310,7 +359,8 @@ constexpr const char* kClientDoc =
 Client(lcm_url=None, scene=None, *, timeout=0.1, max_retries=50, interval=None, loads=False,
        states_channel='BUOYANCY_STATES', wrenches_channel='BUOYANCY_WRENCHES',
        loads_channel='BUOYANCY_LOADS',
-       status_channel='BUOYANCY_STATUS')
+       status_channel='BUOYANCY_STATUS', water_points_channel='BUOYANCY_WATER_POINTS',
+       water_samples_channel='BUOYANCY_WATER_SAMPLES')
 
 lcm_url: None for LCM_DEFAULT_URL or LCM's default. scene: a Scene or the path of the service's scene
 file; bodies can then be named, unknown ones are refused before they are sent, and a service with another
@@ -348,8 +398,23 @@ void define_client(py::module_& module) {
            py::arg("states_channel") = std::string(kStatesChannel),
            py::arg("wrenches_channel") = std::string(kWrenchesChannel),
            py::arg("loads_channel") = std::string(kLoadsChannel),
-           py::arg("status_channel") = std::string(kStatusChannel));
+           py::arg("status_channel") = std::string(kStatusChannel),
+           py::arg("water_points_channel") = std::string(kWaterPointsChannel),
+           py::arg("water_samples_channel") = std::string(kWaterSamplesChannel));
   add_method<&request>(type, "request", 3, kRequestParameters, kRequestDoc);
+  type.def("sample_water", &sample_water, py::arg("points"), py::kw_only(), py::arg("time") = py::none(),
+           py::arg("utime") = py::none(),
+           R"(sample_water($self, points, *, time=0.0, utime=None)
+--
+
+The water at n points, as the loads of the service see it: a dict.
+
+points: (n, 3), m, world frame. time: seconds; utime: microseconds, instead of it. The dict has elevation
+(n,), m over the level, of the surface above or below each point; pressure (n,), Pa over that of the air;
+velocity (n, 3), m/s, of current and waves; density (n,), kg/m^3; utime; and status, a Status: all numbers are
+0 unless it is OK. Above the surface, pressure and velocity are 0.
+
+Waits as request() does, and raises the same errors.)");
   type.def("close", &close,
            R"(close($self)
 --

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/water_points.h"
 #include "query/pose_loop.h"
 #include "scene/scene_file.h"
 
@@ -14,25 +15,6 @@ constexpr double kTimePerComponent = 10.0;  // [ns], rough
 double time_per_point(const QuerySea& sea) {
   if (sea.waves() == nullptr) return 1.0;
   return kTimePerComponent * static_cast<double>(sea.waves()->prepared().size());
-}
-
-// Returns the water at a point if the surface has no waves.
-WaterAtPoint without_waves(const Water& water, const Vec3& p_W) {
-  WaterAtPoint point;
-  point.height = water.up_W.dot(p_W) - water.level;
-  point.pressure = point.height < 0.0 ? -point.height * water.density * water.gravity : 0.0;
-  return point;
-}
-
-// Adds what the layers contribute to the pressure of the water above them.
-void add_pressure_of_layers(const Water& water, const Vec3& p_W, WaterAtPoint& point) {
-  if (!(point.height < 0.0)) return;
-  for (std::size_t i = 0; i < water.layers.size(); ++i) {
-    const Water step = water_of_step(water, i);
-    const double depth = step.level - water.up_W.dot(p_W);
-    if (!(depth > 0.0)) return;
-    point.pressure += step.density * water.gravity * depth;
-  }
 }
 
 }  // namespace
@@ -89,8 +71,7 @@ void water_at_points(const QuerySea& sea, std::span<const double> points,
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 p_W{points[3 * i], points[3 * i + 1], points[3 * i + 2]};
       const SeaAtTime* const now = moving.at(utimes[utimes.size() == 1 ? 0 : i]);
-      WaterAtPoint point = now == nullptr ? without_waves(sea.water(), p_W) : now->at(p_W);
-      if (!sea.water().layers.empty()) add_pressure_of_layers(sea.water(), p_W, point);
+      const WaterAtPoint point = water_at({&sea.water(), now}, p_W);
       const Vec3 current_W = sea.current().at(sea.water(), p_W);
       if (!out.pressures.empty()) out.pressures[i] = point.pressure;
       for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -23,7 +23,7 @@ std::string_view as_text(Bytes bytes) {
 
 // Returns whether data is complete by itself, whatever follows it.
 bool is_request_or_pose(Bytes data) {
-  return peek_request_id(data).has_value() || decode_bot_pose(data).has_value();
+  return peek_request(data).has_value() || decode_bot_pose(data).has_value();
 }
 
 // Returns whether the data holds an event header: a message that lost bytes is filled up with the next event.

@@ -112,7 +112,7 @@ TEST(RequestBudgets, RequestsInProgressTakeTurns) {
     EXPECT_EQ(handler.begin(requests.back(), kPassed), Step::kStarted);
   }
   for (std::size_t finished = 0; finished < 3;) {
-    const std::int64_t session = handler.next_session_id();
+    const std::int64_t session = handler.next_session().id;
     if (handler.resume(kPassed) != Step::kAnswered) continue;
     EXPECT_EQ(static_cast<std::size_t>(session), finished++) << "the shortest first";
     EXPECT_EQ(reply_of(handler), whole_reply(scene, requests[static_cast<std::size_t>(session)]));

@@ -73,8 +73,8 @@ const Scene& small_scene() {
   return kPrepared;
 }
 
-// A kind of message. `empty` is an encoded message without bodies: its first eight bytes are the fingerprint,
-// its last four the number of bodies.
+// A kind of message. `empty` is an encoded message without bodies or points: its first eight bytes are the
+// fingerprint, its last four the number of bodies or points.
 struct Kind {
   Packet empty;
   std::size_t body_size;  // [bytes]
@@ -92,12 +92,15 @@ Kind kind_of() {
   return kind;
 }
 
-const std::array<Kind, 5>& kinds() {
-  static const std::array<Kind, 5> kKinds = [] {
+const std::array<Kind, 6>& kinds() {
+  static const std::array<Kind, 6> kKinds = [] {
     Kind status{.empty = {}, .body_size = 0};
     encode(ServiceStatus{}, status.empty);
-    return std::array<Kind, 5>{kind_of<WrenchRequest>(), kind_of<WrenchResponse>(),
-                               kind_of<BodiesHydrostatics>(), status, kind_of<BodiesLoads>()};
+    Kind points{.empty = {}, .body_size = water_points_size(1) - water_points_size(0)};
+    encode(WaterPoints{}, points.empty);
+    return std::array<Kind, 6>{kind_of<WrenchRequest>(),      kind_of<WrenchResponse>(),
+                               kind_of<BodiesHydrostatics>(), status,
+                               kind_of<BodiesLoads>(),        points};
   }();
   return kKinds;
 }
@@ -219,8 +222,34 @@ Outputs outputs_of(const RequestHandler& handler) {
   return {copy_of(handler.last_hydrostatics()), copy_of(handler.last_loads())};
 }
 
+void check_samples(const WaterPoints& request, Bytes bytes) {
+  WaterSamples samples;
+  require(!decode(bytes, samples), "samples of the water decode");
+  require(same(samples.id, request.id), "samples carry their request's id");
+  require(samples.samples.size() == request.points.size(), "there is a sample for each point");
+  const bool is_zero = samples.status != BodyStatus::kOk;
+  for (const WaterSample& sample : samples.samples) {
+    const std::array numbers{sample.elevation,   sample.pressure,    sample.velocity[0],
+                             sample.velocity[1], sample.velocity[2], sample.density};
+    require(finite(numbers), "samples are finite numbers");
+    require(!is_zero || std::ranges::count(numbers, 0.0) == 6, "samples that are not OK are zeros");
+  }
+}
+
+// A request for the water at points is answered like one about bodies.
+void send_points(const Packet& packet, const WaterPoints& request, RequestHandler& handler) {
+  const Packet response = copy_of(handler.handle(packet));
+  check_samples(request, response);
+  require(copy_of(handler.handle(packet)) == response, "a retry gets the same bytes");
+  RequestHandler fresh(small_scene(), {.max_sessions = 1, .threads = 1});
+  require(copy_of(fresh.handle(packet)) == response, "samples do not depend on earlier requests");
+}
+
 // handler: the one that receives all packets.
 void send_request(const Packet& packet, RequestHandler& handler) {
+  if (WaterPoints points; !decode(packet, points)) {
+    return send_points(packet, points, handler);
+  }
   const auto id = peek_request_id(packet);
   WrenchRequest request;
   const std::optional<DecodeError> error = decode(packet, request);
@@ -283,7 +312,7 @@ void check(FuzzBytes bytes) {
     const Packet packet = next_packet(bytes);
     const int read_as = int{decodes<WrenchRequest>(packet)} + int{decodes<WrenchResponse>(packet)} +
                         int{decodes<BodiesHydrostatics>(packet)} + int{decodes<BodiesLoads>(packet)} +
-                        int{decodes<ServiceStatus>(packet)};
+                        int{decodes<ServiceStatus>(packet)} + int{decodes<WaterPoints>(packet)};
     require(read_as <= 1, "a packet decodes as at most one kind of message");
     send_request(packet, handler);
     send_pose(packet, poses, handler);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kVersionLength = 8 + 8 + 8;  // offset [bytes] of the version's length
 constexpr std::size_t kEmptyString = 4 + 1;
-constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{8 + 6 + 26 + 11 + 1 + 9 + 2 + 4 + 1};
+constexpr std::size_t kTrailer = 8 + 4 * 4 + 8 * std::size_t{8 + 6 + 27 + 11 + 1 + 11 + 2 + 4 + 1};
 
 std::string random_text() {
   return *rc::gen::container<std::string>(rc::gen::inRange<char>(1, CHAR_MAX));
@@ -77,6 +77,7 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.rejected_count = c.rejected_count;
   message.rejected_length = c.rejected_length;
   message.rejected_bodies = c.rejected_bodies;
+  message.rejected_points = c.rejected_points;
   message.rejected_work = c.rejected_work;
   message.rejected_busy = c.rejected_busy;
   message.rejected_memory = c.rejected_memory;
@@ -111,6 +112,8 @@ ByteVector encoded_by_lcm(const ServiceStatus& status) {
   message.bodies_below_bed = c.bodies_below_bed;
   message.wave_patches = c.wave_patches;
   message.hydrostatics = c.hydrostatics;
+  message.water_points = c.water_points;
+  message.water_points_failed = c.water_points_failed;
   message.largest_dropped_force = c.largest_dropped_force;
   message.largest_dropped_torque = c.largest_dropped_torque;
   message.latency_p50 = status.latency.p50;
@@ -232,13 +235,14 @@ TEST(ServiceStatus, DoesNotAllocateAfterWarmUp) {
 TEST(ServiceCounters, SumsRejectionsOverCauses) {
   ServiceCounters counters;
   std::int64_t place = 1;
-  for (std::int64_t* cause : {&counters.rejected_truncated, &counters.rejected_fingerprint,
-                              &counters.rejected_count, &counters.rejected_length, &counters.rejected_bodies,
-                              &counters.rejected_work, &counters.rejected_busy, &counters.rejected_memory}) {
+  for (std::int64_t* cause :
+       {&counters.rejected_truncated, &counters.rejected_fingerprint, &counters.rejected_count,
+        &counters.rejected_length, &counters.rejected_bodies, &counters.rejected_points,
+        &counters.rejected_work, &counters.rejected_busy, &counters.rejected_memory}) {
     *cause = place;
     place *= 10;
   }
-  EXPECT_EQ(counters.rejected(), 11'111'111);
+  EXPECT_EQ(counters.rejected(), 111'111'111);
 }
 
 TEST(ServiceCounters, AddsTotalsAndTakesTheLargest) {

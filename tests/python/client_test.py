@@ -31,6 +31,24 @@ name = "rock"
 shape = { type = "rock" }
 """
 
+SEA = """
+[water]
+density = 1000
+[[water.layer]]
+below = -2
+density = 1025
+[[water.current.profile]]
+height = 0
+velocity = [0.8, 0, 0]
+[[water.current.profile]]
+height = -5
+velocity = [0, 0.2, 0]
+[[water.waves]]
+type = "jonswap"
+significant_wave_height = 0.7
+peak_period = 4
+"""
+
 WAIT_FOR_CTRL_C = """
 import buoyancy
 with buoyancy.Client(max_retries=100_000) as client:
@@ -106,6 +124,33 @@ class ExchangesMessagesWithTheService(TestCase):
             self.assertEqual((client.statistics["requests"], client.statistics["malformed"]), (7, 0))
             self.assertGreater(client.statistics["round_trip_p50"], 0)
             self.assertIsNone(client.reserve(2))
+
+    def test_samples_of_the_water_equal_those_of_a_sea(self):
+        path = os.path.join(self.folder.name, "sea.toml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(SEA + SCENE)
+        sea = buoyancy.Sea(path)
+        points = np.random.default_rng(5).uniform((-40, -40, -6), (40, 40, 1), (3_000, 3))
+        x, y, z = points.T
+        with Service(path), buoyancy.Client(**LONG_WAIT) as client:
+            water = client.sample_water(points, time=12.5)
+            self.assertEqual((water["status"], water["utime"]), (buoyancy.Status.OK, 12_500_000))
+            self.assert_same_bits(water["elevation"], sea.elevation(x, y, 12.5))
+            self.assert_same_bits(water["pressure"], sea.pressure(x, y, z, 12.5))
+            below = z <= water["elevation"]
+            self.assertGreater(np.count_nonzero(~below), 50)
+            self.assert_same_bits(water["velocity"],
+                                  np.where(below[:, None], sea.velocity(x, y, z, 12.5), 0.0))
+            self.assert_same_bits(water["density"], np.where(np.minimum(z, water["elevation"]) < -2, 1025.0, 1000.0))
+            self.assert_same_bits(client.sample_water(points, utime=12_500_000)["pressure"], water["pressure"])
+            lost = client.sample_water([[0, 0, np.nan], [0, 0, -1]])
+            self.assertEqual(lost["status"], buoyancy.Status.NON_FINITE_POSE)
+            self.assertEqual(lost["pressure"].tolist(), [0, 0])
+            self.assertEqual(client.sample_water(np.zeros((0, 3)))["velocity"].shape, (0, 3))
+            with self.assertRaisesRegex(ValueError, r"points has shape \(3,\); expected \(n, 3\)"):
+                client.sample_water((0, 0, -1))
+            with self.assertRaisesRegex(buoyancy.ServiceError, "water at 400000 points"):
+                client.sample_water(np.zeros((400_000, 3)))
 
     def test_status_has_the_fields_of_the_message(self):
         message = (SOURCE / "lcmtypes" / "service_status_t.lcm").read_text(encoding="utf-8")

@@ -247,16 +247,42 @@ class ConvertsWater(ImportTestCase):
             self.assertEqual(result.scene["water"]["density"], 1020)
             self.assertIn("density of the water is 1020.0 (model.sdf:1) and 998.0 (model.sdf:1)", result.output)
 
-    def test_air_above_gives_level(self):
-        layers = (
-            "<graded_buoyancy><default_density>1020</default_density><density_change><above_depth>-5</above_depth>"
-            "<density>1000</density></density_change><density_change><above_depth>2</above_depth><density>1</density>"
-            "</density_change></graded_buoyancy>"
+    def graded(self, default, *changes):
+        inside = f"<default_density>{default}</default_density>" + "".join(
+            f"<density_change><above_depth>{height}</above_depth><density>{density}</density></density_change>"
+            for height, density in changes
         )
-        result = self.import_model(world(self.BUOYANCY.format(layers)))
-        self.assertEqual(result.scene["water"], {"density": 1020, "level": 2})
-        self.assertIn("1000 kg/m^3 above -5 m", result.text)
-        self.assertIn("1 kg/m^3 above 2 m are air", result.text)
+        return self.BUOYANCY.format(f"<graded_buoyancy>{inside}</graded_buoyancy>")
+
+    def test_graded_buoyancy_gives_layers_and_level(self):
+        for default, changes, water in (
+            (1000, [(0, 1)], {"density": 1000, "level": 0}),
+            (1020, [], {"density": 1020}),
+            (1020, [(-5, 1000), (2, 1)],
+             {"density": 1000, "level": 2, "layer": [{"below": -5, "density": 1020}]}),
+            # In whatever order, and with a height that changes nothing.
+            (1030, [(0, 1.2), (-1, 850), (-4, 1030), (-3, 1000)],
+             {"density": 850, "level": 0,
+              "layer": [{"below": -1, "density": 1000}, {"below": -3, "density": 1030}]}),
+            # Without air the water ends at the level of the scene, which is 0.
+            (1030, [(-2, 1000)], {"density": 1000, "layer": [{"below": -2, "density": 1030}]}),
+        ):
+            result = self.import_model(world(self.graded(default, *changes)))
+            self.assertEqual(result.scene["water"], water)
+            self.assertEqual("are air" in result.text, "level" in water)
+
+    def test_layers_that_no_scene_has_are_reported(self):
+        for default, changes, water, words in (
+            (1000, [(-2, 1030), (1, 1)], {"density": 1000, "level": 1},
+             "1030 kg/m^3 above -2 m: the fluid under it is lighter"),
+            (1030, [(3, 1000)], {"density": 1030},
+             "1000 kg/m^3 above 3 m: the water of the scene ends at its level, 0 m"),
+        ):
+            result = self.import_model(world(self.graded(default, *changes)))
+            self.assertEqual(result.scene["water"], water)
+            self.assertIn(words, result.text)
+        many = [(-20 + i, 1000 - i) for i in range(18)]
+        self.assert_refused(world(self.graded(1001, *many)), "19 layers of water; expected at most 17")
 
     def test_enabled_entities_are_those_of_the_model(self):
         for names, words in (

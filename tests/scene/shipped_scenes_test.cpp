@@ -45,11 +45,11 @@ TEST(ShippedScenes, HaveFloatingBodies) {
     if (path.filename().string().starts_with("duck")) continue;
     const Expected<Scene> scene = Scene::load(path);
     ASSERT_TRUE(scene) << scene.error().message();
+    const double densest = deepest_density(scene->water());
     for (const Body& body : scene->bodies()) {
       EXPECT_TRUE(body.dynamics.given) << path << ", body " << body.id;
-      EXPECT_LT(body.dynamics.density.value_or(0.0), scene->water().density) << path << ", body " << body.id;
-      EXPECT_LT(body.dynamics.mass.value_or(0.0),
-                scene->water().density * body.prepared_mesh->mass_properties.volume)
+      EXPECT_LT(body.dynamics.density.value_or(0.0), densest) << path << ", body " << body.id;
+      EXPECT_LT(body.dynamics.mass.value_or(0.0), densest * body.prepared_mesh->mass_properties.volume)
           << path << ", body " << body.id;
       EXPECT_EQ(body.loads, body.hydrodynamics != nullptr) << path << ", body " << body.id;
     }
@@ -133,6 +133,14 @@ TEST(ShippedScenes, HaveLogThatFloatsOnOneEdge) {
   for (const Equilibrium& attitude : found.attitudes) {
     EXPECT_NEAR(std::fmod(std::abs(degrees(attitude.angles.heel)), 90.0), 45.0, 1e-6);
   }
+}
+
+TEST(ShippedScenes, HaveFloatThatRestsWhereTheWaterBegins) {
+  const Scene scene = Scene::load(shipped("interface_float.toml")).value();
+  const auto found = find_equilibrium_from(floating(scene, 1), scene.water(), Eigen::Quaterniond::Identity());
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->draft, 1.0 + 0.5 * 0.2, 1e-12) << "half of its height is in the water";
+  EXPECT_NEAR(degrees(found->angles.heel), 0.0, 1e-6);
 }
 
 }  // namespace

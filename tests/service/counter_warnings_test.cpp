@@ -63,6 +63,8 @@ TEST(CounterWarnings, NameEveryCounterThatGrows) {
        "buoyancyd --check reports the steepness"},
       {field(&ServiceCounters::bodies_below_bed), "bodies that reach below the sea bed", "a body that sinks"},
       {field(&ServiceCounters::rejected_bodies), "requests rejected, more than 10000 bodies more", "repeats"},
+      {field(&ServiceCounters::rejected_points), "requests rejected, more points than", "distribute"},
+      {field(&ServiceCounters::water_points_failed), "points at which the water is not known", "NaN"},
       {field(&ServiceCounters::rejected_work), "requests rejected, computed for more than", "distribute"},
       {field(&ServiceCounters::rejected_busy), "requests rejected, ", "too many clients"},
       {field(&ServiceCounters::rejected_memory), "messages rejected, out of memory", "more memory"},

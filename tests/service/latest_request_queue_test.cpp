@@ -19,12 +19,12 @@ Bytes bytes_of(const std::string& text) {
 }
 
 PushResult push(LatestRequestQueue& queue, std::int64_t session, std::int64_t seq, const std::string& text) {
-  return queue.push({0, session, seq}, bytes_of(text), 0.0);
+  return queue.push({.id = {0, session, seq}}, bytes_of(text), 0.0);
 }
 
 std::vector<std::string> pop_all(LatestRequestQueue& queue) {
   std::vector<std::string> popped;
-  while (queue.pop_next([](std::int64_t) { return true; },
+  while (queue.pop_next([](const SessionKey&) { return true; },
                         [&](Bytes bytes, double) { popped.emplace_back(bytes.begin(), bytes.end()); })) {
   }
   return popped;
@@ -64,11 +64,11 @@ TEST(LatestRequestQueue, DropsStaleRequestsAfterNewestWasPopped) {
 
 TEST(LatestRequestQueue, AcceptsLowerSeqAfterRestartIdleTime) {
   LatestRequestQueue queue(8, kManyBytes);
-  queue.push({0, 1, 30}, bytes_of("old"), 10.0);
+  queue.push({.id = {0, 1, 30}}, bytes_of("old"), 10.0);
   pop_all(queue);
-  EXPECT_EQ(queue.push({0, 1, 0}, bytes_of("late"), 10.1), PushResult::kStale);
-  EXPECT_EQ(queue.push({0, 1, 0}, bytes_of("new"), 10.3), PushResult::kQueued);
-  EXPECT_EQ(queue.push({0, 1, 1}, bytes_of("newer"), 10.301), PushResult::kReplaced)
+  EXPECT_EQ(queue.push({.id = {0, 1, 0}}, bytes_of("late"), 10.1), PushResult::kStale);
+  EXPECT_EQ(queue.push({.id = {0, 1, 0}}, bytes_of("new"), 10.3), PushResult::kQueued);
+  EXPECT_EQ(queue.push({.id = {0, 1, 1}}, bytes_of("newer"), 10.301), PushResult::kReplaced)
       << "the session continues from there";
   EXPECT_EQ(pop_all(queue), Strings{"newer"});
 }
@@ -116,7 +116,7 @@ TEST(LatestRequestQueue, ServesSessionsInTurnWhateverTheirRequestRates) {
       push(queue, 2, seq, "fast" + std::to_string(seq));
       push(queue, 3, seq, "faster" + std::to_string(seq));
     }
-    queue.pop_next([](std::int64_t) { return true; },
+    queue.pop_next([](const SessionKey&) { return true; },
                    [&](Bytes bytes, double) { popped.emplace_back(bytes.begin(), bytes.end()); });
     push(queue, 1, seq, "slow");
   }
@@ -137,9 +137,9 @@ TEST(LatestRequestQueue, EvictsLeastRecentlyUsedSession) {
 
 TEST(LatestRequestQueue, ReturnsArrivalTimeOfNewestRequest) {
   LatestRequestQueue queue(2, kManyBytes);
-  queue.push({0, 1, 1}, bytes_of("a"), 1.5);
-  queue.push({0, 1, 2}, bytes_of("b"), 2.5);
-  EXPECT_TRUE(queue.pop_next([](std::int64_t) { return true; },
+  queue.push({.id = {0, 1, 1}}, bytes_of("a"), 1.5);
+  queue.push({.id = {0, 1, 2}}, bytes_of("b"), 2.5);
+  EXPECT_TRUE(queue.pop_next([](const SessionKey&) { return true; },
                              [](Bytes, double arrival) { EXPECT_EQ(arrival, 2.5); }));
 }
 
@@ -150,8 +150,8 @@ TEST(LatestRequestQueue, KeepsPendingRequestsWithinTheirMemory) {
   EXPECT_EQ(push(queue, 2, 1, large), PushResult::kQueued);
   EXPECT_EQ(push(queue, 3, 1, large), PushResult::kFull);
   EXPECT_EQ(push(queue, 1, 2, large), PushResult::kReplaced);
-  EXPECT_TRUE(queue.pop_next([](std::int64_t session) { return session == 2; }, [](Bytes, double) {}));
-  EXPECT_FALSE(queue.pop_next([](std::int64_t session) { return session == 2; }, [](Bytes, double) {}));
+  EXPECT_TRUE(queue.pop_next([](const SessionKey& session) { return session == 2; }, [](Bytes, double) {}));
+  EXPECT_FALSE(queue.pop_next([](const SessionKey& session) { return session == 2; }, [](Bytes, double) {}));
   EXPECT_EQ(push(queue, 3, 1, large), PushResult::kQueued) << "in the memory of a popped one";
   EXPECT_EQ(push(queue, 4, 1, std::string(2'000, 'a')), PushResult::kFull);
 }

@@ -22,7 +22,7 @@ TEST(WaitingRequests, ReturnsTheFirstOfASessionThatMayGoOn) {
   std::string popped;
   double arrived = 0.0;
   const auto pop = [&](std::int64_t session) {
-    return waiting.pop_next([session](std::int64_t id, double) { return id == session; },
+    return waiting.pop_next([session](const SessionKey& each, double) { return each == session; },
                             [&](Bytes bytes, double arrival) {
                               popped.assign(bytes.begin(), bytes.end());
                               arrived = arrival;
@@ -47,7 +47,7 @@ TEST(WaitingRequests, BoundsTheirNumberAndMemory) {
   EXPECT_EQ(waiting.push(2, bytes_of("1234"), 0.0), PushResult::kFull);
   EXPECT_EQ(waiting.push(2, bytes_of("123"), 0.0), PushResult::kQueued);
   EXPECT_EQ(waiting.push(3, bytes_of(""), 0.0), PushResult::kFull);
-  EXPECT_TRUE(waiting.pop_next([](std::int64_t, double) { return true; }, [](Bytes, double) {}));
+  EXPECT_TRUE(waiting.pop_next([](const SessionKey&, double) { return true; }, [](Bytes, double) {}));
   EXPECT_EQ(waiting.push(3, bytes_of("1234567"), 0.0), PushResult::kQueued);
 }
 

@@ -169,6 +169,10 @@ class Importer:
         text.key("density", value, f"kg/m^3, {source}")
         if "level" in water:
             text.key("level", water["level"][0], f"m, {water['level'][1]}")
+        for below, density, of in self.water.layers:
+            text.table("[[water.layer]]")
+            text.key("below", below, f"m, {of}")
+            text.key("density", density, "kg/m^3")
         if "current" in water:
             text.table("water.current")
             text.key("velocity", scene_toml.vector(water["current"][0]), f"m/s, {water['current'][1]}")

@@ -26,6 +26,7 @@ _WAVE_DEFAULTS = {
     "number": 3, "period": 5.0, "scale": 1.1, "angle": 0.4, "gain": 1.0, "amplitude": 0.0, "phase": 0.0
 }
 _AIR = 100.0  # kg/m^3: a layer that is lighter is the air above the water
+_MAX_LAYERS = 16  # of a scene, below the water at its surface
 # Keys of plugins whose buoyancy is not that of the geometry.
 _GEOMETRY = "buoyancy follows from the geometry"
 _UUV_SHAPE = ("metacentric_width", "metacentric_length", "submerged_height")
@@ -88,6 +89,7 @@ class Hydrodynamics:
         self.model, self.report = model, report
         self.coefficients, self.declared = [], []
         self.water = {}  # key: (value, source)
+        self.layers = []  # (height below which it begins, density, source), from the top down
         self.waves = None  # (components, source)
         for link in model.links.values():
             added = link.inertial and link.inertial.element.find("fluid_added_mass")
@@ -185,17 +187,7 @@ class Hydrodynamics:
             uniform = element.find("uniform_fluid_density")
             self._set_water("density", element.number("uniform_fluid_density", 1000.0), uniform or element)
         else:
-            default = graded.number("default_density", 1000.0)
-            self._set_water("density", default, graded)
-            for layer in graded.all("density_change"):
-                height, density = layer.number("above_depth", 0.0), layer.number("density", 0.0)
-                what = f"the water of the scene has {default:g} kg/m^3 everywhere"
-                if density < _AIR <= default and "level" not in self.water:
-                    self._set_water("level", height, layer)
-                    self.report.leave_out(f"graded buoyancy: the {density:g} kg/m^3 above {height:g} m are air, whose "
-                                          "buoyancy is left out", layer)
-                else:
-                    self.report.leave_out(f"graded buoyancy: {density:g} kg/m^3 above {height:g} m; {what}", layer)
+            self._graded_buoyancy(graded)
         enabled, name = element.all("enable"), self.model.name
         own = [child for child in enabled if name in child.text.strip().split("::")]
         if enabled and not own:
@@ -205,6 +197,37 @@ class Hydrodynamics:
             if child.text.strip() != name:
                 self.report.note(f"<enable> {child.text.strip()}: every body of the scene is buoyant", child)
         return True
+
+    def _graded_buoyancy(self, graded):
+        """Each density holds from its height (z) up to the next; the default one below all of them."""
+        changes = sorted(((change.number("above_depth", 0.0), change.number("density", 0.0), change)
+                          for change in graded.all("density_change")), key=lambda change: change[0])
+        below = graded.number("default_density", 1000.0)
+        source = graded.find("default_density") or graded
+        is_water, layers = below >= _AIR, []
+        for height, density, change in changes:
+            stated = f"graded buoyancy: {density:g} kg/m^3 above {height:g} m"
+            if is_water and density < _AIR:
+                self._set_water("level", height, change)
+                self.report.leave_out(f"graded buoyancy: the {density:g} kg/m^3 above {height:g} m are air, whose "
+                                      "buoyancy is left out", change)
+                break
+            if density > below:
+                self.report.leave_out(f"{stated}: the fluid under it is lighter, so that it would sink", change)
+            elif density < below:
+                layers.insert(0, (height, below, source))
+                below, source = density, change
+        level = self.water.get("level", (0.0,))[0]
+        while layers and layers[0][0] >= level:
+            self.report.leave_out(f"graded buoyancy: {below:g} kg/m^3 above {layers[0][0]:g} m: the water of the scene "
+                                  f"ends at its level, {level:g} m", source)
+            _, below, source = layers.pop(0)
+        if len(layers) > _MAX_LAYERS:
+            fail(graded, f"{len(layers) + 1} layers of water", f"at most {_MAX_LAYERS + 1}", "",
+                 "Combine those that differ least")
+        self._set_water("density", below, source)
+        if self.water["density"][0] == below:
+            self.layers = [(height, density, of.source) for height, density, of in layers]
 
     def simple_hydrodynamics(self, plugin, element):
         """VRX: positive coefficients, some with defaults other than 0, in the axes of the inertial pose."""
