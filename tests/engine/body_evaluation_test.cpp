@@ -318,9 +318,9 @@ TEST(Extrapolate, IsAccurateForTinyRotations) {
 RC_GTEST_PROP(Extrapolate, ComposesStepsOfConstantTwist, ()) {
   const auto number = [] { return *rc::gen::inRange(-1000, 1001) * 1e-3; };
   const Pose start{.p_WB = {number(), number(), number()},
-                   .q_WB = Eigen::Quaterniond(1.5, number(), number(), number()).normalized()};
-  const Vec3 v(number(), number(), number());
-  const Vec3 w = 5.0 * Vec3(number(), number(), number());
+                   .q_WB = Eigen::Quaterniond{1.5, number(), number(), number()}.normalized()};
+  const Vec3 v{number(), number(), number()};
+  const Vec3 w = 5.0 * Vec3{number(), number(), number()};
   const double first = number();
   const double second = number();
   const Pose twice = extrapolate(extrapolate(start, v, w, first), v, w, second);

@@ -68,7 +68,7 @@ RC_GTEST_PROP(SeaTimeline, AgreesWithAModelThatKeepsEverything, ()) {
   };
   const auto count = *rc::gen::inRange<std::size_t>(0, SeaTimeline::kMaxSeas);
   for (std::size_t i = 0; i < count; ++i) {
-    received.emplace_back(*rc::gen::inRange<std::int64_t>(-6, 6), *rc::gen::inRange(0, 3));
+    received.push_back({*rc::gen::inRange<std::int64_t>(-6, 6), *rc::gen::inRange(0, 3)});
     RC_ASSERT(timeline.receive(sea(received.back().first, received.back().second), receiving()).has_value());
   }
   for (std::int64_t utime = -7; utime <= 6; ++utime) {

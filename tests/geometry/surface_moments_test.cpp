@@ -47,7 +47,10 @@ double max_difference(const SurfaceMoments<double>& a, const SurfaceMoments<doub
 }
 
 Vec3T<Rational> rational_point() {
-  const auto coordinate = [] { return Rational(*rc::gen::inRange(-50, 51), *rc::gen::inRange(1, 8)); };
+  const auto coordinate = [] {
+    const int numerator = *rc::gen::inRange(-50, 51);
+    return Rational(numerator, *rc::gen::inRange(1, 8));
+  };
   return {coordinate(), coordinate(), coordinate()};
 }
 

@@ -108,9 +108,9 @@ RC_GTEST_PROP(RequestTracker, KeepsCountsConsistentForAnyTraffic, ()) {
   double now = 0.0;
   const auto steps = *rc::gen::inRange(0, 300);
   for (int i = 0; i < steps; ++i) {
-    const RequestId id =
-        request_id(*rc::gen::element<std::int64_t>(0, 1, -1, Limits::max(), Limits::min()),
-                   *rc::gen::element<std::int64_t>(0, 1, 2, 3, 1'000, Limits::max(), Limits::min()));
+    const auto session_id = *rc::gen::element<std::int64_t>(0, 1, -1, Limits::max(), Limits::min());
+    const auto seq = *rc::gen::element<std::int64_t>(0, 1, 2, 3, 1'000, Limits::max(), Limits::min());
+    const RequestId id = request_id(session_id, seq);
     switch (*rc::gen::inRange(0, 3)) {
       case 0:
         tracker.on_request(id, *rc::gen::inRange<std::int64_t>(0, 1'000), now);
