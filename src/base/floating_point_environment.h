@@ -19,8 +19,8 @@ class DefaultFloatingPoint {
   DefaultFloatingPoint& operator=(const DefaultFloatingPoint&) = delete;
 
 #if defined(__x86_64__)
-  // This takes some 5 ns if both units have their default settings; the x87 unit computes with long double. The functions
-  // of <cfenv>, which always save that unit, take some 100 ns.
+  // This takes some 5 ns if both units have their default settings; the x87 unit computes with long double.
+  // The functions of <cfenv>, which always save that unit, take some 100 ns.
   DefaultFloatingPoint() noexcept : sse_(_mm_getcsr()) {
     std::uint16_t x87 = 0;
     __asm__ volatile("fnstcw %0" : "=m"(x87));
