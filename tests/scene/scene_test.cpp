@@ -310,11 +310,14 @@ TEST(Scene, NamesOnlyMeshWithoutSceneFile) {
 }
 
 TEST(Scene, PreparesBodiesForWavesThatAreReceived) {
-  const Scene scene = prepared("[water]\nwaves = \"received\"\n" + body_with(1, kBox));
-  EXPECT_TRUE(scene.receives_sea());
-  EXPECT_EQ(scene.sea(), nullptr);
-  EXPECT_EQ(scene.bodies()[0].solver.tolerance(), 1e-3);
-  EXPECT_TRUE(scene.bodies()[0].prepared_mesh->wave_mesh);
+  for (const std::string messages : {"received", "grid"}) {
+    const Scene scene = prepared("[water]\nwaves = \"" + messages + "\"\n" + body_with(1, kBox));
+    EXPECT_TRUE(scene.receives_sea());
+    EXPECT_EQ(scene.receives_grids(), messages == "grid");
+    EXPECT_EQ(scene.sea(), nullptr);
+    EXPECT_EQ(scene.bodies()[0].solver.tolerance(), 1e-3);
+    EXPECT_TRUE(scene.bodies()[0].prepared_mesh->wave_mesh);
+  }
 }
 
 TEST(Scene, RefusesEventsThatOverfillATank) {

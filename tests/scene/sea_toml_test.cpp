@@ -168,7 +168,8 @@ TEST(SeaToml, RejectsWrongKeysOfTheWater) {
        "unknown key 'wave'; expected one of level, density, depth, wave_pressure, time_origin, "
        "ramp, waves, current, layer. The nearest known key is 'waves'."},
       {"waves = \"recieved\"",
-       "waves = \"recieved\"; expected a table [[water.waves]] for each wave system, or \"received\""},
+       "waves = \"recieved\"; expected a table [[water.waves]] for each wave system, \"received\", or "
+       "\"grid\""},
       {"waves = 3", "waves = 3; expected a table"},
       {"waves = [1, 2]", "waves = [1, 2]; expected a table"},
       {"waves = [{ type = \"regular\" }, 2]", "expected a table [[water.waves]]"},
@@ -183,10 +184,12 @@ TEST(SeaToml, RejectsWrongKeysOfTheWater) {
 TEST(SeaToml, RejectsKeysThatComeWithAReceivedSea) {
   for (const std::string key : {"depth = 30", "wave_pressure = \"wheeler\"", "time_origin = 0", "ramp = 5"}) {
     const std::string name = key.substr(0, key.find(' '));
-    EXPECT_THAT(parse_error(water_with(key + "\nwaves = \"received\"")),
-                AllOf(StartsWith("pool.toml:2: [water]: " + name),
-                      HasSubstr("expected no " + name + " with waves = \"received\"")))
-        << key;
+    for (const std::string waves : {"waves = \"received\"", "waves = \"grid\""}) {
+      EXPECT_THAT(parse_error(water_with(key + "\n" + waves)),
+                  AllOf(StartsWith("pool.toml:2: [water]: " + name),
+                        HasSubstr("expected no " + name + " with " + waves)))
+          << key;
+    }
   }
 }
 
