@@ -254,8 +254,10 @@ TEST(WaterRequests, ChangeNoWrench) {
   RequestHandler handler(scene, {.threads = 1});
   RequestHandler alone(scene, {.threads = 1});
   for (std::int64_t seq = 1; seq < 20; ++seq) {
-    handler.handle(points_request({kNow + 7'000 * seq, 5, seq}, random_points(4)));
-    const ByteVector bodies = request_bytes({kNow + 1'000 * (seq / 2), 5, seq}, {upright(1, 0.0)});
+    // At the time of the bodies, or at another one.
+    const std::int64_t utime = kNow + 1'000 * (seq / 2);
+    handler.handle(points_request({seq % 4 == 3 ? utime + 7 : utime, 5, seq}, random_points(4)));
+    const ByteVector bodies = request_bytes({utime, 5, seq}, {upright(1, 0.0)});
     ASSERT_EQ(copy_of(handler.handle(bodies)), copy_of(alone.handle(bodies))) << seq;
   }
 }
