@@ -446,7 +446,7 @@ TEST(Fmu, RunsInstancesOnTwoThreads) {
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < equal.size(); ++i) {
     threads.emplace_back([&, i] {
-      const Importer host(fmu, kVersions[i]);
+      const Importer host(fmu, FmiVersion::k3);  // of the same library
       equal[i] = host.initialize() == kFmiOk && wrenches_of(host, "rock", poses) == expected;
     });
   }
