@@ -124,7 +124,7 @@ void read_and_write_with_lcm(const std::string& input, const std::string& output
 
 void replay_log(const Scene& scene, const std::string& input, const std::string& output, unsigned jobs) {
   service::ReplayChannels channels = value_or_exit(service::ReplayChannels::make(
-      {.states = std::string(kStatesChannel), .sea = "", .condition = ""}, {}, {}, {}));
+      {.states = std::string(kStatesChannel), .sea = "", .condition = "", .water_points = ""}, {}, {}, {}));
   PoseRequestAdapter poses({}, 1);
   service::ReplayInput reader = value_or_exit(service::ReplayInput::open(
       input, service::FileFormat::kLcmLog, only_channel(std::string(kStatesChannel))));
@@ -138,7 +138,8 @@ void replay_log(const Scene& scene, const std::string& input, const std::string&
                        .poses = poses,
                        .output = writer,
                        .layout = {service::FileFormat::kLcmLog, std::string(kWrenchesChannel),
-                                  std::string(kHydrostaticsChannel), std::string(kLoadsChannel)},
+                                  std::string(kHydrostaticsChannel), std::string(kLoadsChannel),
+                                  std::string(kWaterSamplesChannel)},
                        .jobs = jobs},
                       signals, {[](const std::string&) {}, [](std::int64_t, std::int64_t, std::int64_t) {}}));
   if (!summary.complete()) fail("the replay was not complete");

@@ -267,7 +267,9 @@ TEST(RunBuilder, DrawsLargeSurfacesLessOften) {
   for (int i = 0; i < kRows; ++i) {
     header.utime = 1'000'000 * i;
     builder.receive_sea(0, grid_bytes(header, [](double, double) { return 0.25; }));
-    RecordedState state{.time = header.utime, .utime = header.utime, .state = request_at(0, 0.0).bodies[0]};
+    RecordedState state;
+    state.time = state.utime = header.utime;
+    state.state = request_at(0, 0.0).bodies[0];
     builder.add(state);
     builder.add(state);  // another body at the same time
   }
