@@ -62,11 +62,14 @@ void write_eight(std::uint32_t value, char* to) {
     }
     return pairs;
   }();
+  const auto copy_pair = [](std::uint32_t number, char* out) {
+    std::copy_n(kPairs.begin() + 2 * std::ptrdiff_t{number}, 2, out);
+  };
   const std::uint32_t high = value / 10'000, low = value % 10'000;
-  std::copy_n(kPairs.begin() + 2 * (high / 100), 2, to);
-  std::copy_n(kPairs.begin() + 2 * (high % 100), 2, to + 2);
-  std::copy_n(kPairs.begin() + 2 * (low / 100), 2, to + 4);
-  std::copy_n(kPairs.begin() + 2 * (low % 100), 2, to + 6);
+  copy_pair(high / 100, to);
+  copy_pair(high % 100, to + 2);
+  copy_pair(low / 100, to + 4);
+  copy_pair(low % 100, to + 6);
 }
 
 }  // namespace
