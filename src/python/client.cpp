@@ -286,7 +286,7 @@ py::dict sample_water(py::handle self, py::handle points, py::handle time, py::h
   fields["status"] = status_object((*samples)->status);
   const auto add = [&](const char* name, auto WaterSample::*member) {
     using Member = std::remove_reference_t<decltype(std::declval<WaterSample&>().*member)>;
-    constexpr std::size_t kWidth = sizeof(Member) / sizeof(double);
+    constexpr std::size_t kWidth = std::is_same_v<Member, double> ? 1 : 3;
     std::vector<py::ssize_t> shape{given.shape(0)};
     if (kWidth > 1) shape.push_back(kWidth);
     py::array_t<double> array(shape);

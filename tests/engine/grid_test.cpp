@@ -137,12 +137,12 @@ TEST(RequestHandlerOnGrids, EqualsWaterAtRestOverALevelPlane) {
 TEST(RequestHandlerOnGrids, IsWithinTheInterpolationErrorOfAComponentSea) {
   constexpr double kHeight = 0.4;
   constexpr double kLength = 6.0;
-  constexpr double k = 2.0 * std::numbers::pi / kLength;
-  const double period = 2.0 * std::numbers::pi / std::sqrt(kStandardGravity * k);
+  constexpr double kWaveNumber = 2.0 * std::numbers::pi / kLength;
+  const double period = 2.0 * std::numbers::pi / std::sqrt(kStandardGravity * kWaveNumber);
   const Scene scene = scene_of(kGrid + bodies());
   RequestHandler on_grid(scene);
   ASSERT_TRUE(on_grid.receive_sea(
-      grid_bytes(at(0), [=](double x1, double) { return 0.5 * kHeight * std::cos(k * x1); })));
+      grid_bytes(at(0), [=](double x1, double) { return 0.5 * kHeight * std::cos(kWaveNumber * x1); })));
   const Scene described = scene_of(
       "[water]\nwave_pressure = \"hydrostatic\"\nwaves = { type = \"regular\", height = 0.4, period = " +
       std::to_string(period) + " }\n" + bodies());
