@@ -23,9 +23,6 @@ std::string to_json(const PingTask& task, const PingResult& result);  // one obj
 // check that compared nothing is skipped, and left out where the scene does not request it.
 std::string to_junit(const PingTask& task, const PingResult& result);
 
-// Escapes text for XML: markup, and characters that XML 1.0 cannot hold or that are not UTF-8 become U+FFFD.
-std::string escape_xml(std::string_view text);
-
 // Writes a file that appears under its name when it is complete. Errors: not writable, the disk is full.
 Expected<void> write_file(const std::filesystem::path& path, const std::string& text);
 

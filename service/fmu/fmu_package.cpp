@@ -9,6 +9,7 @@
 
 #include "base/format.h"
 #include "base/text_file.h"
+#include "base/xml_text.h"
 #include "cli/pose_options.h"
 #include "geometry/mesh_export.h"
 #include "scene/body_flotation.h"
@@ -103,7 +104,7 @@ std::string documentation_of(const Scene& scene) {
   std::string report = scene_report_text(scene, {.motions = true, .flotation = &flotation});
   for (const Warning& warning : scene_warnings(scene)) report += "warning: " + warning.message() + "\n";
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" +
-         fmu::escape_xml(scene.name()) + "</title></head>\n<body><pre>\n" + fmu::escape_xml(report) +
+         escape_xml(scene.name()) + "</title></head>\n<body><pre>\n" + escape_xml(report) +
          "</pre></body></html>\n";
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "base/format.h"
+#include "base/xml_text.h"
 
 namespace buoyancy::fmu {
 namespace {
@@ -130,29 +131,6 @@ std::string structure_xml(const VariableTable& table, FmiVersion version) {
 }
 
 }  // namespace
-
-std::string escape_xml(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += static_cast<unsigned char>(c) < ' ' && c != '\n' ? ' ' : c;
-    }
-  }
-  return escaped;
-}
 
 std::string to_xml(const ModelDescription& model, const VariableTable& table, FmiVersion version) {
   const bool is_2 = version == FmiVersion::k2;

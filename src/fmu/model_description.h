@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "fmu/variables.h"
 
@@ -18,8 +17,5 @@ struct ModelDescription {
 
 // Returns the file with all variables of the table.
 std::string to_xml(const ModelDescription& model, const VariableTable& table, FmiVersion version);
-
-// Returns text in which no character has a meaning in XML or HTML; control characters become spaces.
-std::string escape_xml(std::string_view text);
 
 }  // namespace buoyancy::fmu

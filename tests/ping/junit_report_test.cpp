@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/xml_text.h"
 #include "client/ping/ping_report.h"
 #include "tests/ping/two_scenes.h"
 
