@@ -41,7 +41,7 @@ class UnpackedFmu {
   std::filesystem::path folder(FmiVersion version) const {
     return dir_.path() / (version == FmiVersion::k2 ? "fmi 2" : "fmi 3");
   }
-  std::filesystem::path library(FmiVersion version) const {
+  std::filesystem::path shared_object(FmiVersion version) const {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder(version) / "binaries")) {
       if (entry.path().extension() == ".so") return entry.path();
     }
@@ -66,7 +66,7 @@ class Importer {
   Importer(const UnpackedFmu& fmu, FmiVersion version)
       : fmu_(fmu),
         version_(version),
-        library_(::dlopen(fmu.library(version).c_str(), RTLD_NOW | RTLD_LOCAL)) {
+        library_(::dlopen(fmu.shared_object(version).c_str(), RTLD_NOW | RTLD_LOCAL)) {
     if (library_ == nullptr) throw std::runtime_error(::dlerror());
     callbacks_ = {reinterpret_cast<void*>(&log_2), nullptr, nullptr, nullptr, this};
     instantiate(fmu.model().token);
